@@ -9,12 +9,12 @@ use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::language::parsing::{self, Reading};
-use crate::script::models::imported::is_unit;
 use crate::script::models::{checking, simulation};
 use crate::source::Span;
 use crate::syntax::errors::NOT_A_SCRIPT;
 use crate::{lsp, packages};
 use clap::{Args, ValueHint};
+use gapilib_fmi::archive::is_unit;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

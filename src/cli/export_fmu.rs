@@ -5,7 +5,7 @@ use super::{limits, session};
 use crate::diag::{Diagnostic, Fault};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::script::models::exported::{exported, translate};
+use crate::script::models::exported::{Form, exported, translate};
 use crate::script::models::parameter_sets;
 use crate::source::Span;
 use clap::{Args, ValueEnum, ValueHint};
@@ -115,7 +115,7 @@ fn run(
         model_exchange: arguments.kind != Kind::Cs,
         co_simulation: arguments.kind != Kind::Me,
     };
-    let bytes = exported(session, class, version, kinds)?;
+    let bytes = exported(session, class, Form { version, kinds, name: None })?;
     session.permit_file(output);
     session.write_file(output, &bytes).map_err(one)?;
     let size = bytes.len() as f64 / 1e6;

@@ -22,13 +22,14 @@ Columns are matched with model variables by name, unit, description and start va
 Examples:
   gapi new curve.csv --model Curve.mo
   gapi new curve.csv --model models --class CaseStudies.PolarizationCurve --output fit.toml
+  gapi new measured.csv --model Pump.fmu
 
 Exit code: 0 if the file was written, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct NewArgs {
     /// The measured data (CSV, text file of an instrument, MAT, XLSX)
     #[arg(value_hint = ValueHint::FilePath)]
     pub data: PathBuf,
-    /// The Modelica file or folder, or a library class
+    /// The Modelica file or folder, a functional mock-up unit (FMU), or a library class
     #[arg(long, value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub model: PathBuf,
     /// The class, if the file contains several

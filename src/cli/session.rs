@@ -163,7 +163,7 @@ pub(super) fn is_class(text: &str) -> bool {
             && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     };
     let ending = name.rsplit('.').next().unwrap_or_default();
-    name.split('.').all(is_identifier) && !["mo", "mos"].contains(&ending)
+    name.split('.').all(is_identifier) && !["fmu", "mo", "mos"].contains(&ending)
 }
 
 /// Lists what scripts and models may do, if that is asked for: then nothing else is done.

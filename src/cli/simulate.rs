@@ -219,16 +219,29 @@ fn run(
     let simulated = with_progress(span, options, global, |options| {
         simulation::simulate(session, &model, &options)
     });
-    // What was computed until a failure is shown as a whole simulation is: it says the most about it.
+    if arguments.from.is_none() && simulated.as_ref().err().is_none_or(|own| own.until.is_some()) {
+        session.note_default_starts(&model);
+    }
+    outcome(session, class, (arguments, picture, format), simulated)
+}
+
+/// How a simulation is to be shown.
+type Show<'a> = (&'a SimulateArgs, Option<plot::Picture>, Option<Box<dyn results::Format>>);
+
+/// Shows a simulation. What was computed until a failure is shown as a whole simulation is: it says the most
+/// about it.
+fn outcome(
+    session: &mut Session,
+    name: &str,
+    how: Show<'_>,
+    simulated: Result<Simulated, Unfinished>,
+) -> Result<(), Vec<Diagnostic>> {
     let (simulated, why) = match simulated {
         Ok(simulated) => (simulated, None),
         Err(Unfinished { why, until: Some(until) }) => (*until, Some(why)),
         Err(Unfinished { why, until: None }) => return Err(vec![why]),
     };
-    if arguments.from.is_none() {
-        session.note_default_starts(&model);
-    }
-    let shown = show(session, class, arguments, picture, format, simulated);
+    let shown = show(session, name, how, simulated);
     let errors = why.into_iter().chain(shown.err().map(|fault| fault.at(Span::NONE)));
     let errors: Vec<Diagnostic> = errors.collect();
     if errors.is_empty() { Ok(()) } else { Err(errors) }
@@ -237,20 +250,18 @@ fn run(
 /// Shows and writes what the options ask for.
 fn show(
     session: &mut Session,
-    class: &str,
-    arguments: &SimulateArgs,
-    picture: Option<plot::Picture>,
-    format: Option<Box<dyn results::Format>>,
+    name: &str,
+    (arguments, picture, format): Show<'_>,
     mut simulated: Simulated,
 ) -> Result<(), Fault> {
     problem::Driven::without_own_inputs(&mut simulated.table);
-    session.print(&summary(class, &simulated));
+    session.print(&summary(name, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
         session.print(&simulated.hardest.as_ref().map(effort::table).unwrap_or_default());
     }
     if !arguments.plot.is_empty() {
-        draw(session, class, (arguments, picture), &simulated.table)?;
+        draw(session, name, (arguments, picture), &simulated.table)?;
     }
     write_or_show(session, arguments, format, &simulated.table)
 }

@@ -15,7 +15,8 @@ create_exception!(
     "What is wrong with a script, a model, a problem or a simulation.\n\n\
      `str(error)` shows each diagnostic with its place and what to do; `error.diagnostics` is a list \
      of dicts with the keys severity, code, message, file, line, column, helps and text; \
-     `error.code` is the code of the first error."
+     `error.code` is the code of the first error. Where a simulation has failed, `error.result` has \
+     what was computed until then, or None."
 );
 
 /// A diagnostic apart from the session that has the text.

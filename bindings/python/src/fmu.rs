@@ -1,7 +1,7 @@
 //! Functional mock-up units: of models, and of files.
 
 use crate::errors::{Reported, raised, raised_fault};
-use crate::model::{SimulationResult, keep_only};
+use crate::model::{Simulation, SimulationResult, ended, finished};
 use crate::session::{Answer, checked};
 use crate::worker::{Worker, written};
 use gapilib::Fault;
@@ -10,7 +10,7 @@ use gapilib::internals::fmi::description::Version;
 use gapilib::internals::fmi::export::Kinds;
 use gapilib::internals::fmi::import::Imported;
 use gapilib::internals::identify::Model as _;
-use gapilib::internals::script::models::exported::exported;
+use gapilib::internals::script::models::exported::{Form, exported};
 use gapilib::internals::script::models::imported::{self, CO_SIMULATION, Given};
 use gapilib::internals::script::models::simulation::{self, SimulationOptions};
 use gapilib::internals::script::runs::problem;
@@ -65,7 +65,7 @@ pub(crate) fn export(
             let set = engine.set_parameter(name, *value);
             set.map_err(|fault| vec![Reported::fault(fault)])?;
         }
-        let bytes = exported(engine, &problem, version, kinds);
+        let bytes = exported(engine, &problem, Form { version, kinds, name: None });
         checked(engine, bytes)
     })?;
     let bytes = answer.map_err(|errors| raised(py, &errors))?;
@@ -100,10 +100,17 @@ impl Fmu {
     }
 }
 
+/// A value that Python gives a variable.
+#[derive(FromPyObject)]
+enum Value {
+    Number(f64),
+    Text(String),
+}
+
 /// What a simulation is asked for.
 struct Request {
     options: SimulationOptions,
-    parameters: Vec<(String, f64)>,
+    parameters: Vec<(String, Value)>,
     inputs: Option<PathBuf>,
 }
 
@@ -133,15 +140,15 @@ impl Fmu {
         Ok(self.model(py, Given::default())?.names())
     }
 
-    /// Simulates it, with values for parameters and start values by their names, and inputs that follow
-    /// the columns of a file. What is None is taken from its description.
+    /// Simulates it, with values for parameters and start values by their names (numbers, bools, strings,
+    /// literals of enumerations by their names), and inputs that follow the columns of a file. What is None is taken from its description.
     #[pyo3(signature = (parameters=None, *, start=None, stop=None, intervals=None, interval=None,
         tolerance=None, method=None, variables=None, inputs=None))]
     #[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
     fn simulate(
         &self,
         py: Python<'_>,
-        parameters: Option<IndexMap<String, f64>>,
+        parameters: Option<IndexMap<String, Value>>,
         start: Option<f64>,
         stop: Option<f64>,
         intervals: Option<usize>,
@@ -165,12 +172,7 @@ impl Fmu {
         let unit = self.unit.clone();
         let (answer, errors) =
             self.worker.call_quietly(py, move |engine| simulated(engine, &unit, request))?;
-        let simulated = answer.map_err(|errors| raised(py, &errors))?;
-        written(py, "stderr", &errors)?;
-        let mut table = simulated.table;
-        keep_only(&mut table, variables.as_deref()).map_err(|fault| raised_fault(py, fault))?;
-        let (model, statistics) = (self.unit.file.clone(), simulated.statistics);
-        Ok(SimulationResult { model, table: Arc::new(table), statistics })
+        finished(py, &self.unit.file, (answer, &errors), variables.as_deref())
     }
 
     fn __repr__(&self) -> String {
@@ -179,24 +181,25 @@ impl Fmu {
 }
 
 /// Simulates on the thread of the session.
-fn simulated(
-    engine: &mut Engine,
-    unit: &Arc<Imported>,
-    request: Request,
-) -> Answer<simulation::Simulated> {
-    let fault = |fault: Fault| vec![Reported::fault(fault)];
+fn simulated(engine: &mut Engine, unit: &Arc<Imported>, request: Request) -> Simulation {
+    let fault = |fault: Fault| (vec![Reported::fault(fault)], None);
     let mut given = Given::default();
     for (name, value) in &request.parameters {
-        given.set(unit, name, *value).map_err(fault)?;
+        let set = match value {
+            Value::Number(value) => given.set(unit, name, *value),
+            Value::Text(text) => given.add(unit, name, text),
+        };
+        set.map_err(fault)?;
     }
     let samples = match &request.inputs {
         None => Vec::new(),
         Some(path) => {
             engine.grant_input(path);
             let followed = problem::inputs_of(engine, unit, path).map_err(|error| vec![error]);
-            checked(engine, followed)?.samples
+            checked(engine, followed).map_err(|errors| (errors, None))?.samples
         }
     };
     let model = imported::model(unit, given, samples).map_err(fault)?;
-    imported::simulate(engine, &model, &request.options).map_err(fault)
+    let done = imported::simulate(engine, &model, &request.options);
+    ended(engine, done)
 }

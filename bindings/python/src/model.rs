@@ -1,7 +1,7 @@
 //! Translated models and the results of their simulations.
 
-use crate::errors::{Reported, raised_fault};
-use crate::session::{Answer, checked};
+use crate::errors::{Reported, raised, raised_fault, reported};
+use crate::session::checked;
 use crate::simulator::{Points, Simulator};
 use crate::worker::{Worker, written};
 use gapilib::Fault;
@@ -9,7 +9,9 @@ use gapilib::internals::identify::{CompiledModel, Model as _};
 use gapilib::results::{self, ResultTable, Values};
 use gapilib::Session as Engine;
 use gapilib::internals::script::models::final_state::FinalState;
-use gapilib::internals::script::models::simulation::{self, SimulationOptions, Translated};
+use gapilib::internals::script::models::simulation::{
+    self, Simulated, SimulationOptions, Translated, Unfinished,
+};
 use gapilib::internals::sim::Statistics;
 use indexmap::IndexMap;
 use numpy::PyArray1;
@@ -161,18 +163,7 @@ impl Model {
         let model = self.translated.clone();
         let (answer, errors) =
             self.worker.call_quietly(py, move |engine| simulated(engine, &model, request))?;
-        match answer {
-            Ok((mut table, statistics)) => {
-                written(py, "stderr", &errors)?;
-                keep_only(&mut table, variables.as_deref()).map_err(|f| raised_fault(py, f))?;
-                Ok(SimulationResult {
-                    model: self.name().to_owned(),
-                    table: Arc::new(table),
-                    statistics,
-                })
-            }
-            Err(errors) => Err(crate::errors::raised(py, &errors)),
-        }
+        finished(py, self.name(), (answer, &errors), variables.as_deref())
     }
 
     /// Prepares many simulations that differ in the values of `parameters` and answer the values of
@@ -226,16 +217,51 @@ pub(crate) fn parameters<'py>(
     Ok(all)
 }
 
+/// What a simulation has come to, or what is wrong, with what was computed until then.
+pub(crate) type Simulation = Result<Simulated, (Vec<Reported>, Option<Box<Simulated>>)>;
+
+/// A simulation that has ended on the thread of the session.
+pub(crate) fn ended(engine: &Engine, done: Result<Simulated, Unfinished>) -> Simulation {
+    done.map_err(|Unfinished { why, until }| (reported(&[why], &engine.sources), until))
+}
+
+/// The result of a simulation; the exception for one that failed has what was computed until then as its
+/// `result`.
+pub(crate) fn finished(
+    py: Python<'_>,
+    name: &str,
+    (simulation, errors): (Simulation, &str),
+    variables: Option<&[String]>,
+) -> PyResult<SimulationResult> {
+    let result = |simulated: Simulated| {
+        let Simulated { mut table, statistics, .. } = simulated;
+        keep_only(&mut table, variables).map_err(|fault| raised_fault(py, fault))?;
+        Ok(SimulationResult { model: name.to_owned(), table: Arc::new(table), statistics })
+    };
+    match simulation {
+        Ok(simulated) => {
+            written(py, "stderr", errors)?;
+            result(simulated)
+        }
+        Err((reported, until)) => {
+            let error = raised(py, &reported);
+            let until = until.map(|until| result(*until)).transpose()?;
+            error.value(py).setattr("result", until)?;
+            Err(error)
+        }
+    }
+}
+
 /// Simulates on the thread of the session.
 fn simulated(
     engine: &mut Engine,
     model: &Arc<Translated>,
     request: SimulationRequest,
-) -> Answer<(ResultTable, Statistics)> {
-    let fault = |fault: Fault| vec![Reported::fault(fault)];
+) -> Simulation {
+    let fault = |fault: Fault| (vec![Reported::fault(fault)], None);
     // Values that were set before do not count.
     let model = simulation::translate_anew(engine, &model.problem);
-    let model = checked(engine, model)?;
+    let model = checked(engine, model).map_err(|errors| (errors, None))?;
     let mut options = request.options;
     if let Some((table, time)) = request.from {
         let time = time.or(table.time.last().copied()).unwrap_or(0.0);
@@ -246,9 +272,8 @@ fn simulated(
     for (name, value) in &request.parameters {
         engine.set_parameter(name, *value).map_err(fault)?;
     }
-    let simulated = simulation::simulate(engine, &model, &options);
-    let simulated = checked(engine, simulated.map_err(|unfinished| vec![unfinished.why]))?;
-    Ok((simulated.table, simulated.statistics))
+    let done = simulation::simulate(engine, &model, &options);
+    ended(engine, done)
 }
 
 /// Removes the variables that are not selected.

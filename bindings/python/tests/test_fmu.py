@@ -46,6 +46,26 @@ def test_a_unit_is_fitted(decay, tmp_path):
     assert fit.parameters["k"] == pytest.approx(2.5, abs=1e-2)
 
 
+@needs_runtime
+def test_what_was_computed_until_a_failure_is_kept(tmp_path):
+    session = gapilib.Session(allow_external=True)
+    text = "model Limited Real x(start = 0, fixed = true); equation der(x) = 1; " \
+           "assert(x < 0.5, \"x too large\"); end Limited;"
+    (tmp_path / "Limited.mo").write_text(text)
+    session.load(tmp_path / "Limited.mo")
+    model = session.model("Limited")
+    model.export_fmu(tmp_path / "limited.fmu")
+    for own in [model, session.fmu(tmp_path / "limited.fmu")]:
+        with pytest.raises(gapilib.GapilibError, match="x too large") as raised:
+            own.simulate(stop=1.0)
+        result = raised.value.result
+        assert 0.4 < result.time[-1] <= 0.51
+        np.testing.assert_allclose(result["x"], result.time, atol=1e-6)
+    with pytest.raises(gapilib.GapilibError) as raised:
+        model.simulate({"k": 1.0})
+    assert getattr(raised.value, "result", None) is None
+
+
 def test_units_need_permission_and_words_that_there_are(decay, tmp_path):
     with pytest.raises(ValueError, match="there is no FMI 1"):
         decay.export_fmu(tmp_path / "x.fmu", version=1)

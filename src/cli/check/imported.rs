@@ -38,6 +38,7 @@ fn described(session: &Session, path: &Path) -> Result<String, Fault> {
     let kinds = [
         (description.model_exchange.is_some(), "model exchange"),
         (description.co_simulation.is_some(), "co-simulation"),
+        (description.scheduled_execution.is_some(), "scheduled execution"),
     ];
     let kinds: Vec<&str> = kinds.iter().filter(|(has, _)| *has).map(|(_, name)| *name).collect();
     let states = match description.structure.derivatives.len() {
@@ -56,6 +57,7 @@ fn described(session: &Session, path: &Path) -> Result<String, Fault> {
         let names: Vec<String> = layout
             .scalars()
             .iter()
+            .chain(layout.strings())
             .filter(of_kind)
             .map(|scalar| with_unit(description, scalar))
             .collect();

@@ -1,9 +1,6 @@
 //! The simulation of a functional mock-up unit.
 
-use super::{
-    SimulateArgs, check_filter, draw, filter, options, statistics, summary, with_progress,
-    write_or_show,
-};
+use super::{SimulateArgs, check_filter, filter, options, outcome, with_progress};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::options::Global;
@@ -16,13 +13,14 @@ use crate::script::models::simulation::{self, SimulationOptions};
 use crate::script::runs::problem;
 use crate::source::Span;
 use crate::{plot, results, session};
+use gapilib_fmi::archive::is_unit;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The unit among the files, if it is the only one.
 pub(super) fn unit_of(files: &[PathBuf]) -> Option<&Path> {
     match files {
-        [only] if imported::is_unit(only) => Some(only),
+        [only] if is_unit(only) => Some(only),
         _ => None,
     }
 }
@@ -45,7 +43,8 @@ pub(super) fn simulate(path: &Path, arguments: &SimulateArgs, global: &Global) -
     }
     match run(&mut session, path, arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => session::failed(&mut session, vec![error]),
+        Err(_) if session.is_interrupted() => session::stopped(&mut session),
+        Err(errors) => session::failed(&mut session, errors),
     }
 }
 
@@ -54,8 +53,8 @@ fn run(
     path: &Path,
     arguments: &SimulateArgs,
     global: &Global,
-) -> Result<(), Diagnostic> {
-    let one = |fault: Fault| fault.at(Span::NONE);
+) -> Result<(), Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
     refuse(arguments).map_err(one)?;
     let format = match &arguments.output {
         Some(path) => Some(results::format_of_file(&path.to_string_lossy()).map_err(one)?),
@@ -73,13 +72,14 @@ fn run(
         given.add(&unit, name, value).map_err(one)?;
     }
     let inputs = arguments.input.as_deref();
-    let inputs = inputs.map(|path| problem::inputs_of(session, &unit, path)).transpose()?;
+    let inputs = inputs.map(|path| problem::inputs_of(session, &unit, path)).transpose();
+    let inputs = inputs.map_err(|error| vec![error])?;
     if let Some(inputs) = &inputs
         && unit.description.experiment.stop.is_none()
     {
         options.stop.get_or_insert(inputs.span.1);
     }
-    let annotated = imported::experiment(&unit.description);
+    let annotated = unit.description.experiment.annotation();
     let plain = SimulationOptions { method: None, ..options.clone() };
     let settings = simulation::settings(&annotated, &plain).map_err(one)?;
     let span = (settings.start, settings.stop);
@@ -93,15 +93,7 @@ fn run(
     let simulated = with_progress(span, options, global, |options| {
         imported::simulate(session, &model, &options)
     });
-    let simulated = simulated.map_err(one)?;
-    session.print(&summary(&unit.file, &simulated));
-    if arguments.stats {
-        session.print(&statistics(&simulated.statistics));
-    }
-    if !arguments.plot.is_empty() {
-        draw(session, &unit.file, (arguments, picture), &simulated.table).map_err(one)?;
-    }
-    write_or_show(session, arguments, format, &simulated.table).map_err(one)
+    outcome(session, &unit.file, (arguments, picture, format), simulated)
 }
 
 /// Refuses what needs the equations of a model.

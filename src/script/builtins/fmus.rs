@@ -7,7 +7,7 @@ use crate::errors::BAD_ARGUMENT;
 use crate::fmi::description::Version;
 use crate::fmi::export::{Kinds, identifier};
 use crate::fmi::import::{Imported, InterfaceKind};
-use crate::models::exported::exported;
+use crate::models::exported::{Form, exported};
 use crate::models::imported::{self, CO_SIMULATION};
 use crate::name::Name;
 use crate::value::Value;
@@ -56,8 +56,8 @@ fn kinds(text: &str) -> Result<Kinds, Fault> {
 }
 
 /// Writes the unit of a model; whether that was possible. Errors are reported.
-fn write(session: &mut Session, class: &str, form: (Version, Kinds), file: &str) -> bool {
-    let done = exported(session, class, form.0, form.1);
+fn write(session: &mut Session, class: &str, form: Form<'_>, file: &str) -> bool {
+    let done = exported(session, class, form);
     let Some(bytes) = session.or_report_all(done) else { return false };
     let written = session.write_file(Path::new(file), &bytes);
     session.or_report(written).is_some()
@@ -67,7 +67,7 @@ const TRANSLATE_MODEL_FMU: &str = r#"
 function translateModelFMU "Writes a model, with the values that the script gave to its parameters, as a functional mock-up unit: a file .fmu in the current folder."
   input String modelToOpen = "" "Class or Class(modification); empty: the model used last";
   input Boolean storeResult = false "has no effect: the importer stores results";
-  input String modelName = "" "name of the file without .fmu; empty: the class with _ for .";
+  input String modelName = "" "name of the model in the unit, and of its file without .fmu; empty: the class, in the name of the file with _ for .";
   input String fmiVersion = "2" "2 or 3";
   input String fmiType = "all" "me, cs, all; csSolver is cs";
   input Boolean includeSource = false "has no effect: there is no source in C";
@@ -79,13 +79,15 @@ end translateModelFMU;
 
 fn translate_model_fmu(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: String = args.take("modelToOpen")?;
-    let form =
-        (version(&args.take::<String>("fmiVersion")?)?, kinds(&args.take::<String>("fmiType")?)?);
-    let name: String = args.take("modelName")?;
+    let version = version(&args.take::<String>("fmiVersion")?)?;
+    let kinds = kinds(&args.take::<String>("fmiType")?)?;
+    let given: String = args.take("modelName")?;
+    let name = Some(given.as_str()).filter(|name| !name.is_empty());
     let class = super::simulation::problem_in_use(session, &class)?;
-    let name = if name.is_empty() { identifier(&class) } else { name };
-    let is_written = write(session, &class, form, &format!("{name}.fmu"));
-    Ok(if is_written { name } else { String::new() }.into())
+    let file = name.map_or_else(|| identifier(&class), str::to_owned);
+    let form = Form { version, kinds, name };
+    let is_written = write(session, &class, form, &format!("{file}.fmu"));
+    Ok(if is_written { file } else { String::new() }.into())
 }
 
 /// A header of OpenModelica with these defaults.
@@ -127,8 +129,9 @@ const TRANSLATE_MODEL_FMU_OPENMODELICA: &str = build_header!(
 
 fn build_model_fmu(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
-    let form =
-        (version(&args.take::<String>("version")?)?, kinds(&args.take::<String>("fmuType")?)?);
+    let version = version(&args.take::<String>("version")?)?;
+    let kinds = kinds(&args.take::<String>("fmuType")?)?;
+    let form = Form { version, kinds, name: None };
     let prefix: String = args.take("fileNamePrefix")?;
     let class = class.to_string();
     let prefix = if ["", "<default>"].contains(&prefix.as_str()) { class.clone() } else { prefix };
@@ -175,22 +178,23 @@ fn import_fmu(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const IMPORT_FMU_OPENMODELICA: &str = r#"
-function importFMU "Imports a functional mock-up unit: from then on simulate simulates it under the name that is returned. It runs only with the permission of the command line, --allow-external=FILE."
+function importFMU "Imports a functional mock-up unit: from then on simulate simulates it under its name, whether or not the script loads the file that is returned. It runs only with the permission of the command line, --allow-external=FILE."
   input String filename;
-  input String workdir = "<default>" "has no effect: no file is written";
+  input String workdir = "<default>" "folder of the file; <default>: the current one";
   input Integer loglevel = 3 "has no effect";
-  input Boolean fullPath = false "has no effect";
+  input Boolean fullPath = false "whether the whole path of the file is returned";
   input Boolean debugLogging = false "has no effect";
   input Boolean generateInputConnectors = true "has no effect";
   input Boolean generateOutputConnectors = true "has no effect";
   input TypeName modelName = Default "name; if not given that of its model with the ending _me_FMU or _cs_FMU";
-  output String generatedFileName "the name; empty if it could not be imported. No file is written";
+  output String generatedFileName "a Modelica file with a class of this name, which stands for the unit; empty if it could not be imported";
 end importFMU;
 "#;
 
 fn import_fmu_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("filename")?;
     let given = args.take::<Name>("modelName")?.to_string();
+    let (folder, is_full): (String, bool) = (args.take("workdir")?, args.take("fullPath")?);
     let name = |unit: &Imported| {
         let kind = match unit.kind {
             InterfaceKind::ModelExchange => "me",
@@ -202,5 +206,23 @@ fn import_fmu_openmodelica(session: &mut Session, mut args: Args) -> Result<Valu
             _ => given,
         }
     };
-    Ok(import(session, &file, None, name).unwrap_or_default().into())
+    let Some(name) = import(session, &file, None, name) else { return Ok(String::new().into()) };
+    let written = format!("{name}.mo");
+    let folder = if folder == "<default>" { "" } else { folder.as_str() };
+    let path = Path::new(folder).join(&written);
+    let done = session.write_file(&path, placeholder(&name, &file).as_bytes());
+    if session.or_report(done).is_none() {
+        return Ok(String::new().into());
+    }
+    let whole = session.world.absolute(&path).display().to_string();
+    Ok(if is_full { whole } else { written }.into())
+}
+
+/// A class in the place of a unit, which scripts load after an import. It cannot be simulated itself.
+fn placeholder(name: &str, file: &str) -> String {
+    let file = file.replace('\\', "/").replace('"', "'");
+    format!(
+        "model {name} \"The FMU {file}\"\nequation\n  assert(false, \"`{name}` stands for an FMU: \
+         import it, importFMU(\\\"{file}\\\"), before it is simulated\");\nend {name};\n"
+    )
 }

@@ -4,7 +4,7 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::errors::BAD_ARGUMENT;
 use crate::fmi::import::{Imported, Samples};
 use crate::models::imported::{self, Given};
-use crate::models::simulation::{Simulated, SimulationOptions};
+use crate::models::simulation::{Simulated, SimulationOptions, Unfinished};
 use crate::runs::problem::inputs_of;
 use crate::source::SourceId;
 use crate::syntax::ast::{Argument, Binding};
@@ -33,7 +33,7 @@ pub(super) struct ImportedUnit {
 impl ImportedUnit {
     /// What its description says of the experiment.
     pub(super) fn experiment(&self) -> crate::flatten::Experiment {
-        imported::experiment(&self.unit.description)
+        self.unit.description.experiment.annotation()
     }
 
     /// Gives a variable a value, which is written as text.
@@ -57,11 +57,10 @@ impl ImportedUnit {
         &self,
         session: &mut Session,
         options: &SimulationOptions,
-    ) -> Result<Simulated, Vec<Diagnostic>> {
+    ) -> Result<Simulated, Unfinished> {
         let at = session.call_site();
-        let model = imported::model(&self.unit, self.given.clone(), self.inputs.clone());
-        let done = model.and_then(|model| imported::simulate(session, &model, options));
-        done.at(at).map_err(|error| vec![error])
+        let model = imported::model(&self.unit, self.given.clone(), self.inputs.clone()).at(at)?;
+        imported::simulate(session, &model, options)
     }
 }
 

@@ -230,11 +230,19 @@ pub(super) fn run(
             write_results(session, &table, file).at(at).map_err(one)?;
             Ok((options, file.to_owned()))
         }
-        Err(Unfinished { why, until: Some(until) }) if !file.ends_with(NO_FILE) => {
-            let table = recorded(until.table, filter);
-            Err(one(session.write_unfinished(file.as_ref(), &table, why)))
-        }
-        Err(Unfinished { why, .. }) => Err(one(why)),
+        Err(unfinished) => Err(one(kept(session, unfinished, (file, filter)))),
+    }
+}
+
+/// Keeps what a simulation has computed until it failed, unless no file is asked for.
+fn kept(
+    session: &mut Session,
+    unfinished: Unfinished,
+    (file, filter): (&str, &Regex),
+) -> Diagnostic {
+    match file.ends_with(NO_FILE) {
+        true => unfinished.why,
+        false => unfinished.kept(session, file.as_ref(), |_, table| recorded(table, filter)),
     }
 }
 
@@ -268,8 +276,10 @@ fn run_unit(
     values.try_for_each(|(name, value)| unit.set_text(name, value)).at(at).map_err(one)?;
     let options = completed(options, &unit.experiment());
     let applied = with_method_of_ours(session, flags.applied_to(options.clone()));
-    let table = unit.simulate(session, &applied)?.table.only(|name| filter.is_match(name));
     let file = flags.result_file(file);
+    let done = unit.simulate(session, &applied);
+    let done = done.map_err(|unfinished| one(kept(session, unfinished, (&file, filter))))?;
+    let table = done.table.only(|name| filter.is_match(name));
     write_results(session, &table, &file).at(at).map_err(one)?;
     Ok((options, file))
 }

@@ -8,7 +8,7 @@ use crate::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
 use crate::fault;
 use crate::flatten;
 use crate::models::simulation;
-use crate::models::simulation::{Simulated, SimulationOptions, Translated, Unfinished};
+use crate::models::simulation::{Simulated, SimulationOptions, Translated};
 use crate::results::{self, ResultTable};
 use crate::value::Value;
 use crate::{Dialect, Session};
@@ -109,9 +109,13 @@ impl Simulable {
         match self {
             Simulable::Model(model) => run_model(session, model, options, file),
             Simulable::Unit(unit) => {
-                let simulated = unit.simulate(session, options)?;
+                let one = |error: Diagnostic| vec![error];
+                let simulated = unit.simulate(session, options).map_err(|unfinished| {
+                    one(unfinished
+                        .kept(session, &result_path(file), |_, table| named_as_in_dymola(table)))
+                })?;
                 let written = write(session, simulated.table.clone(), file);
-                written.at(session.call_site()).map_err(|error| vec![error])?;
+                written.at(session.call_site()).map_err(one)?;
                 Ok(simulated)
             }
         }
@@ -318,14 +322,13 @@ pub(super) fn run_model(
             super::final_states::write_final(session);
             Ok(simulated)
         }
-        Err(Unfinished { why, until: Some(until) }) => {
-            let last = until.table.time.last().copied().unwrap_or(f64::NEG_INFINITY);
-            let grid = &grid[..grid.partition_point(|time| *time <= last)];
-            let table =
-                named_as_in_dymola(super::output::stored(session, model, &until.table, grid));
-            Err(one(session.write_unfinished(&result_path(file), &table, why)))
+        Err(unfinished) => {
+            Err(one(unfinished.kept(session, &result_path(file), |session, table| {
+                let last = table.time.last().copied().unwrap_or(f64::NEG_INFINITY);
+                let grid = &grid[..grid.partition_point(|time| *time <= last)];
+                named_as_in_dymola(super::output::stored(session, model, &table, grid))
+            })))
         }
-        Err(Unfinished { why, until: None }) => Err(one(why)),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::diag::{Diagnostic, Fault, suggest};
 use crate::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
 use crate::eval;
 use crate::language::execution::Stop;
+use crate::models::imported::refuse_as_text;
 use crate::source::{SourceId, Span};
 use crate::syntax::{self, ScriptParts, ast};
 use crate::world::normalized;
@@ -326,7 +327,9 @@ impl Session {
         if let Some(script) = self.parsed.get(path, stamp) {
             return Ok(script);
         }
-        let (source, text) = self.add_file(path).map_err(|fault| vec![fault.at(Span::NONE)])?;
+        let refused = refuse_as_text(path, "a script");
+        let added = refused.and_then(|()| self.add_file(path));
+        let (source, text) = added.map_err(|fault| vec![fault.at(Span::NONE)])?;
         let script = Arc::new(Parsed::read(source, &text).map_err(|error| vec![error])?);
         self.parsed.keep(path, stamp, &script);
         Ok(script)

@@ -1,16 +1,16 @@
 //! Functional mock-up units of files: read, allowed, and simulated.
 
-use super::simulation::{MOST_STEPS, Simulated, SimulationOptions, settings};
+use super::ranges::Range;
+use super::simulation::{MOST_STEPS, Simulated, SimulationOptions, Unfinished, settings};
 use crate::Session;
-use crate::diag::{Fault, suggest};
-use crate::errors::{BAD_FMU, BAD_PARAMETER_VALUE, FMU_MESSAGE};
+use crate::diag::{At, Fault, suggest};
+use crate::errors::{BAD_FMU, FMU_MESSAGE, INTERRUPTED};
 use crate::external::errors::EXTERNAL_REFUSED;
-use crate::flatten::Experiment;
-use crate::fmi::archive::DESCRIPTION;
-use crate::fmi::description::{self, Description, Kind};
+use crate::fmi::archive::{DESCRIPTION, is_unit};
+use crate::fmi::description::{self, Description, Kind, Variable};
 use crate::fmi::import::{
-    FailureClass, Imported, InterfaceKind, LogMessage, Place, Pool, Samples, SimulationFailure,
-    is_parameter, is_triggered, library_path, refusal, sources, why_not_set,
+    FailureClass, Imported, InterfaceKind, Layout, LogMessage, Place, Pool, Samples, Scalar,
+    SimulationFailure, is_parameter, is_recorded, library_path, refusal, sources, why_not_set,
 };
 use crate::fmi::{Archive, FmuError};
 use crate::identify::{ImportedModel, Model as _};
@@ -24,9 +24,21 @@ use std::sync::Arc;
 /// The method of a simulation in which the unit integrates itself.
 pub const CO_SIMULATION: &str = "co-simulation";
 
-/// Whether a path, or the model of a problem, is the file of a unit.
-pub fn is_unit(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("fmu"))
+/// Refuses a unit where a text is expected.
+///
+/// # Errors
+/// The path is that of a unit: what takes it instead.
+pub(crate) fn refuse_as_text(path: &Path, expected: &str) -> Result<(), Fault> {
+    if !is_unit(path) {
+        return Ok(());
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    bail!(
+        BAD_FMU,
+        "`{name}` is an FMU, not {expected}";
+        help: "`gapi check {name}` shows what is in it, `gapi simulate {name}` simulates it, `gapi new DATA \
+               --model {name}` drafts a fit of it; scripts take it by `importFMU(\"{name}\")`"
+    )
 }
 
 /// What a unit says of itself, with its archive.
@@ -149,17 +161,6 @@ pub fn import(
     Ok(Arc::new(Imported { file: name, description, kind, pool: Pool::new(start) }))
 }
 
-/// What its description says of the experiment.
-pub fn experiment(description: &Description) -> Experiment {
-    let own = &description.experiment;
-    Experiment {
-        start_time: own.start,
-        stop_time: own.stop,
-        interval: own.step,
-        tolerance: own.tolerance,
-    }
-}
-
 /// Values in place of start values.
 #[derive(Debug, Clone, Default)]
 pub struct Given {
@@ -177,19 +178,14 @@ impl Given {
     ///
     /// Names that the unit does not have, values that it does not take.
     pub fn add(&mut self, unit: &Imported, name: &str, text: &str) -> Result<(), Fault> {
-        let variables = &unit.description.variables;
-        let is_text = |kind| matches!(kind, Kind::String | Kind::Binary);
-        let of_text = variables.iter().position(|one| one.name == name && is_text(one.kind));
-        if let Some(at) = of_text {
-            let variable = &variables[at];
-            if variable.kind == Kind::Binary {
-                bail!(BAD_FMU, "`{name}` of `{}` is Binary and cannot be set", unit.file);
-            }
-            refuse_unless_settable(unit, name, at)?;
+        let binary = unit.description.find(name).filter(|own| own.kind == Kind::Binary);
+        if binary.is_some() {
+            bail!(BAD_FMU, "`{name}` of `{}` is Binary and cannot be set", unit.file);
+        }
+        if let Some(place) = self.place_of_text(unit, name)? {
+            refuse_unless_settable(unit, name, place.variable)?;
             let text = text.trim().trim_matches('"').to_owned();
-            self.strings.retain(|(place, _)| *place != at);
-            self.strings.push((at, vec![text]));
-            return Ok(());
+            return self.set_text(unit, place, text);
         }
         let place = self.place(unit, name)?;
         let variable = unit.variable(place);
@@ -218,16 +214,46 @@ impl Given {
         if let Some(why) = refusal(unit.variable(place).kind, value) {
             bail!(BAD_FMU, "`{name}` of `{}` {why}", unit.file);
         }
-        check_range(unit, name, place, value)?;
+        let subject = format!("`{name}` of `{}`", unit.file);
+        range(unit, unit.variable(place)).check(&subject, value)?;
         self.numbers.retain(|(known, _)| *known != place);
         self.numbers.push((place, value));
         Ok(())
     }
 
+    /// Gives a String a value; other elements of its array keep theirs.
+    fn set_text(&mut self, unit: &Imported, place: Place, text: String) -> Result<(), Fault> {
+        let count = self.layout(unit)?.count(place.variable);
+        let start = &unit.variable(place).start;
+        let begin = |at| start.get(at).or_else(|| start.first()).cloned().unwrap_or_default();
+        let known = self.strings.iter().position(|(variable, _)| *variable == place.variable);
+        let at = known.unwrap_or_else(|| {
+            self.strings.push((place.variable, (0..count).map(begin).collect()));
+            self.strings.len() - 1
+        });
+        let all = &mut self.strings[at].1;
+        all.resize(count, String::new());
+        all[place.element] = text;
+        Ok(())
+    }
+
+    fn place_of_text(&self, unit: &Imported, name: &str) -> Result<Option<Place>, Fault> {
+        let layout = self.layout(unit)?;
+        Ok(layout.strings().iter().find(|own| own.name == name).map(|own| own.place))
+    }
+
+    fn layout(&self, unit: &Imported) -> Result<Layout, Fault> {
+        unit.layout(&self.numbers).map_err(|why| fault!(BAD_FMU, "`{}`: {why}", unit.file))
+    }
+
     fn place(&self, unit: &Imported, name: &str) -> Result<Place, Fault> {
-        let layout = unit.layout(&self.numbers);
-        let layout = layout.map_err(|why| fault!(BAD_FMU, "`{}`: {why}", unit.file))?;
-        let names = || layout.scalars().iter().map(|scalar| scalar.name.as_str());
+        let layout = self.layout(unit)?;
+        if layout.strings().iter().any(|own| own.name == name) {
+            bail!(BAD_FMU, "`{name}` of `{}` is a String, not a number", unit.file;
+                help: "give it a text");
+        }
+        let all = || layout.scalars().iter().chain(layout.strings());
+        let names = || all().map(|scalar| scalar.name.as_str());
         layout.find(name).ok_or_else(|| {
             fault!(BAD_FMU, "`{}` has no variable `{name}`", unit.file)
                 .help_if(suggest::did_you_mean(name, names()))
@@ -235,26 +261,14 @@ impl Given {
     }
 }
 
-/// As for parameters of models: a value outside the range that its variable declares, or that no literal
-/// of its enumeration has, is not computed with.
-fn check_range(unit: &Imported, name: &str, place: Place, value: f64) -> Result<(), Fault> {
-    let variable = unit.variable(place);
+/// What a variable takes.
+fn range<'u>(unit: &'u Imported, variable: &Variable) -> Range<'u> {
     let own = unit.description.attributes_of(variable);
-    let (min, max) = (own.min.unwrap_or(f64::NEG_INFINITY), own.max.unwrap_or(f64::INFINITY));
-    if !(min..=max).contains(&value) {
-        bail!(
-            BAD_PARAMETER_VALUE,
-            "`{name}` of `{}` is {value}, outside its range from {min} to {max}", unit.file;
-            help: "the range is that of the unit's description"
-        );
-    }
     let items = unit.description.type_of(variable).map_or(&[][..], |own| &own.items[..]);
-    if items.is_empty() || items.iter().any(|item| item.value as f64 == value) {
-        return Ok(());
+    Range {
+        limits: [own.min.unwrap_or(f64::NEG_INFINITY), own.max.unwrap_or(f64::INFINITY)],
+        literals: items.iter().map(|item| (item.value as f64, item.name.as_str())).collect(),
     }
-    let literals: Vec<&str> = items.iter().map(|item| &*item.name).collect();
-    Err(fault!(BAD_PARAMETER_VALUE, "`{name}` of `{}` cannot be {value}", unit.file)
-        .help(format!("its values are {}", literals.join(", "))))
 }
 
 fn refuse_unless_settable(unit: &Imported, name: &str, variable: usize) -> Result<(), Fault> {
@@ -284,47 +298,75 @@ pub fn model(
 ///
 /// # Errors
 ///
-/// Settings that make no sense, and why the simulation failed.
+/// Settings that make no sense, and why the simulation failed, with what was computed until then.
 pub fn simulate(
     session: &mut Session,
     model: &ImportedModel,
     options: &SimulationOptions,
-) -> Result<Simulated, Fault> {
+) -> Result<Simulated, Unfinished> {
+    let call = session.call_site();
     let unit = model.unit_of().clone();
     let own_method = options.method.as_deref() == Some(CO_SIMULATION);
     let options = SimulationOptions {
         method: options.method.clone().filter(|_| !own_method),
         ..options.clone()
     };
-    let mut settings = settings(&experiment(&unit.description), &options)?;
+    let mut settings = settings(&unit.description.experiment.annotation(), &options).at(call)?;
     settings.cancel = session.world.interrupt_flag();
     settings.reached.clone_from(&options.reached);
     settings.max_total_steps = MOST_STEPS;
     let only = options.only.as_ref();
     let scalars = model.layout().scalars().iter();
-    let scalars = scalars.filter(|scalar| !is_triggered(unit.variable(scalar.place)));
+    let scalars = scalars.filter(|scalar| is_recorded(unit.variable(scalar.place)));
     let kept = scalars.filter(|scalar| only.is_none_or(|only| only.is_match(&scalar.name)));
     let (parameters, recorded): (Vec<_>, Vec<_>) =
         kept.partition(|scalar| is_parameter(unit.variable(scalar.place)));
     let names: Vec<String> = recorded.iter().map(|scalar| scalar.name.clone()).collect();
-    let plan = model.planned(&[], &names)?;
+    let plan = model.planned(&[], &names).at(call)?;
     let mut out = Trajectory::default();
     let run = unit.pool.simulate((&plan, &[]), &settings, &mut out);
     note_messages(session, &unit);
-    let statistics = run.map_err(|failure| {
-        let SimulationFailure { time, class, message } = failure;
-        let at = match class {
-            // Where it was then is not known.
-            FailureClass::Process => String::new(),
-            _ => format!(" at {time} s"),
-        };
-        fault!(BAD_FMU, "the simulation of `{}` failed{at}: {message}", unit.file)
-    })?;
-    let mut table = ResultTable::new(out.time().to_vec());
+    let (statistics, why) = match run {
+        Ok(statistics) => (statistics, None),
+        Err(failure) => (*failure.statistics, Some(why(session, &unit, failure).at(call))),
+    };
+    let why = match why {
+        Some(why) if out.is_empty() => return Err(Unfinished::from(why)),
+        why => why,
+    };
     let parameters = parameters.into_iter().map(|own| (own, None));
     let recorded = recorded.into_iter().enumerate().map(|(column, own)| (own, Some(column)));
-    for (scalar, column) in parameters.chain(recorded) {
-        let variable = unit.variable(scalar.place);
+    let table = result_table(model, parameters.chain(recorded), out);
+    let simulated = Simulated { table, statistics, hardest: None };
+    match why {
+        None => Ok(simulated),
+        Some(why) => Err(Unfinished { why, until: Some(Box::new(simulated)) }),
+    }
+}
+
+/// Why a simulation ended early.
+fn why(session: &Session, unit: &Imported, failure: SimulationFailure) -> Fault {
+    let SimulationFailure { time, class, message, .. } = failure;
+    if session.world.interrupted() {
+        return fault!(INTERRUPTED, "interrupted");
+    }
+    let at = match class {
+        // Where it was then is not known.
+        FailureClass::Process => String::new(),
+        _ => format!(" at {time} s"),
+    };
+    fault!(BAD_FMU, "the simulation of `{}` failed{at}: {message}", unit.file)
+}
+
+/// The results of scalars: recorded columns, and parameters.
+fn result_table<'s>(
+    model: &ImportedModel,
+    scalars: impl Iterator<Item = (&'s Scalar, Option<usize>)>,
+    mut out: Trajectory,
+) -> ResultTable {
+    let mut table = ResultTable::new(out.time().to_vec());
+    for (scalar, column) in scalars {
+        let variable = model.unit_of().variable(scalar.place);
         table.series.push(Series {
             name: scalar.name.clone(),
             unit: model.unit(&scalar.name).unwrap_or_default(),
@@ -335,7 +377,7 @@ pub fn simulate(
             },
         });
     }
-    Ok(Simulated { table, statistics, hardest: None })
+    table
 }
 
 /// Notes what a unit has said, each message once.

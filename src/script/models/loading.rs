@@ -1,6 +1,7 @@
 //! Loading classes: from files, folders and libraries, when they are first named.
 
 use super::classes::Enclosing;
+use super::imported::refuse_as_text;
 use super::stored::digest;
 use super::uses::names_in;
 use crate::Session;
@@ -104,8 +105,9 @@ impl Session {
     }
 
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
-        let (source, text) =
-            self.add_file(path).at(self.call_site()).map_err(|error| vec![error])?;
+        let refused = refuse_as_text(path, "a Modelica file");
+        let added = refused.and_then(|()| self.add_file(path));
+        let (source, text) = added.at(self.call_site()).map_err(|error| vec![error])?;
         self.classes.single.insert(source, self.world.absolute(path));
         let names = self.load_source(source, &text, Some(path))?;
         self.classes.note_files(&names, path);

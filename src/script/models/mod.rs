@@ -25,6 +25,7 @@ pub mod modification;
 pub mod parameter_sets;
 mod parameters;
 mod places;
+mod ranges;
 mod reading;
 mod resources;
 mod restart;

@@ -4,6 +4,7 @@ use super::addressing::{Addressed, addressed, all_indices, flat_name};
 use super::changes::{Changed, Given};
 use super::compiled::Current;
 use super::final_state::FinalState;
+use super::ranges::Range;
 use super::translated::Translated;
 use super::typed::{number_in, number_of, unquoted};
 use crate::bail;
@@ -402,25 +403,17 @@ fn is_state(model: &Translated, name: &str) -> bool {
 
 fn check_value(model: &Translated, name: &str, value: f64) -> Result<(), Fault> {
     let parameter = &model.program.parameters()[model.program.find_parameter(name)?];
-    if !value.is_finite() {
-        bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be {value}"; help: "use a finite number");
-    }
-    if value.fract() != 0.0 && parameter.base != BaseType::Real {
+    if value.is_finite() && value.fract() != 0.0 && parameter.base != BaseType::Real {
         bail!(BAD_PARAMETER_VALUE, "`{name}` needs a whole number, but the value is {value}");
     }
-    let domain = match (parameter.min.is_finite(), parameter.max.is_finite()) {
-        (true, true) => format!("outside {} to {}", parameter.min, parameter.max),
-        (true, false) => format!("less than {}", parameter.min),
-        _ => format!("more than {}", parameter.max),
+    let literals = match &parameter.base {
+        BaseType::Enumeration(definition) => &definition.literals[..],
+        _ => &[],
     };
-    if value < parameter.min || value > parameter.max {
-        bail!(
-            BAD_PARAMETER_VALUE,
-            "`{name}` is {value}, {domain}, outside the range declared in the model";
-            help: "choose another value, or change `min` and `max` in the model"
-        );
-    }
-    Ok(())
+    let limits = [parameter.min, parameter.max];
+    let numbered = (1_u32..).map(f64::from).zip(literals);
+    let literals = numbered.map(|(number, literal)| (number, literal.as_str())).collect();
+    Range { limits, literals }.check(&format!("`{name}`"), value)
 }
 
 fn no_model(name: &str) -> Fault {

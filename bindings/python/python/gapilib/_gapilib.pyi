@@ -33,6 +33,7 @@ __version__: str
 class GapilibError(Exception):
     code: str
     diagnostics: List[Dict[str, Any]]
+    result: Optional["SimulationResult"]
 
 def command(arguments: Sequence[str]) -> int: ...
 def run(
@@ -169,7 +170,7 @@ class Fmu:
     def names(self) -> List[str]: ...
     def simulate(
         self,
-        parameters: Optional[Mapping[str, float]] = None,
+        parameters: Optional[Mapping[str, Union[float, str]]] = None,
         *,
         start: Optional[float] = None,
         stop: Optional[float] = None,

@@ -211,7 +211,7 @@ fn experiments(
         let table = rows.as_ref().unwrap_or(&own.table);
         let source = experiment::Source { file, entry, label, segment, number, table, free };
         let built = match unit {
-            Some(unit) => imported::build(&source, (session, unit), notes).map_err(|e| vec![e])?,
+            Some(unit) => imported::build(&source, (session, unit), notes)?,
             None => source.build(session, notes)?,
         };
         all.noise = all.noise.max(built.error);

@@ -1,10 +1,12 @@
 //! The calibrated model as Modelica: the model of the problem with what its file sets and what was
 //! found. Modelica modifies arrays as a whole, so that elements are written with their neighbors.
 
-use super::dynamics;
 use super::file::{ProblemFile, Role, ValueEntry};
+use super::{dynamics, enclosing_class};
 use crate::codegen::Program;
 use crate::identify::problem::{CalibratedModel, Solution, modelica_number};
+use crate::source::Span;
+use crate::syntax::print;
 use indexmap::IndexMap;
 
 /// What a problem's file says about the parameters of its model.
@@ -38,6 +40,10 @@ impl Calibration {
                 Role::Free { .. } => None,
                 Role::Fixed(ValueEntry::Truth(value)) => Some(value.to_string()),
                 Role::Fixed(ValueEntry::Number(value)) => Some(modelica_number(value)),
+                Role::Fixed(text @ ValueEntry::Text(_)) => {
+                    let literal = enclosing_class::literal(&text, name, Span::NONE).ok()?;
+                    Some(print::expression(&literal))
+                }
                 Role::Tied(expression) => Some(expression),
             };
             Some(Entry { name: name.clone(), initial: parameter.initial, text })

@@ -1,36 +1,21 @@
 //! A first problem file from a data file and a model: columns are matched with variables
 //! ([`matching`](super::matching)), ranges are guessed from the model and the data.
 
+use super::draft_subject::{DraftOptions, Estimable, Subject};
 use super::matching::{self, DataColumn, Meaning};
 use super::{build, fault_codes, file};
 use crate::Session;
 use crate::bail;
-use crate::codegen::ParameterInfo;
 use crate::diag::suggest::listed;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
 use crate::mat::{self, MatFile, Matrix, MatrixKind};
-use crate::models::simulation;
-use crate::models::simulation::Translated;
 use crate::registry::BAD_OPTION;
 use crate::results;
 use crate::source::Span;
 use crate::units::written;
 use std::fmt::Write;
 use std::path::Path;
-
-/// What a draft is made from. Paths are written as they are given.
-#[derive(Debug, Clone, Default)]
-pub struct DraftOptions {
-    /// The data file.
-    pub data: String,
-    /// The file or folder of the model; empty for a class of a library.
-    pub models: String,
-    /// The class; empty for the only one of the file.
-    pub class: String,
-    /// The answer to the question that a draft without it leaves open.
-    pub output: Option<String>,
-}
 
 /// A draft and what is left to do.
 #[derive(Debug, Clone)]
@@ -78,24 +63,11 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
     let bytes = session.read_bytes(Path::new(&options.data)).map_err(one)?;
     let table = results::read_data(&options.data, &bytes).map_err(one)?;
     let columns = columns(&table).map_err(one)?;
-    let loaded = match options.models.as_str() {
-        "" => Vec::new(),
-        models => session.load_path(Path::new(models))?,
-    };
-    let class = match options.class.as_str() {
-        "" => build::only_class(&loaded).map_err(one)?,
-        class => class.to_owned(),
-    };
-    // Its warnings come once more with the data, without those about inputs that have data then.
-    let is_quiet = std::mem::replace(&mut session.options.quiet, true);
-    let translated = simulation::translated(session, &class);
-    session.options.quiet = is_quiet;
-    let translated = translated?;
-    let flat = simulation::flat_model_of(session, &translated)?;
-    let (roles, question) = roles(&columns, &translated, flat, options.output.as_deref());
-    let mut text = head(options, &class);
-    parameters(&mut text, &translated, flat, &roles);
-    experiment(&mut text, options, flat, &roles);
+    let subject = Subject::read(session, options)?;
+    let (roles, question) = roles(&columns, &subject, options.output.as_deref());
+    let mut text = head(options, &subject);
+    parameters(&mut text, &subject, &roles);
+    experiment(&mut text, options, &subject.flat, &roles);
     text.push_str(
         "\n[stop]                       # the first condition met ends the run\n\
          evaluations = 20000          # simulations\n\
@@ -143,11 +115,11 @@ fn parts(name: &str, matrix: &Matrix) -> Vec<String> {
 /// The columns by what they mean, and what remains to be asked; `output` is what was answered.
 fn roles<'c>(
     columns: &'c [DataColumn],
-    model: &Translated,
-    flat: &FlatModel,
+    subject: &Subject,
     output: Option<&str>,
 ) -> (Roles<'c>, Option<Question>) {
-    let states: Vec<&str> = model.state_names().map(|name| &**name).collect();
+    let flat = &subject.flat;
+    let states: Vec<&str> = subject.states.iter().map(String::as_str).collect();
     let meanings = matching::meanings(columns, flat, &states);
     let pairs = || columns.iter().zip(&meanings);
     // Where date and time of day are two columns, that of the time of day counts through the days.
@@ -214,16 +186,21 @@ fn guess_output(
     (names.len() > 1).then_some(question)
 }
 
-fn head(options: &DraftOptions, class: &str) -> String {
+fn head(options: &DraftOptions, subject: &Subject) -> String {
+    let (class, is_unit) = (&subject.name, subject.is_unit);
+    let what = match is_unit {
+        true => "the FMU",
+        false => "the class, optionally with a modification: \"Class(p = 1)\"",
+    };
     let mut text = format!(
         "# A problem for `gapi identify`, drafted by `gapi new`: check every line and correct \
          the guesses.\n\n\
          title = {}\n\
-         model = {}          # the class, optionally with a modification: \"Class(p = 1)\"\n",
+         model = {}          # {what}\n",
         quoted(&format!("{class} from {}", options.data)),
         quoted(class),
     );
-    if !options.models.is_empty() {
+    if !options.models.is_empty() && !is_unit {
         _ = writeln!(
             text,
             "files = [{}]          # Modelica files and folders to load",
@@ -243,7 +220,7 @@ fn key(name: &str) -> String {
 }
 
 /// The parameters at the top of the model, each with a range.
-fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &Roles<'_>) {
+fn parameters(text: &mut String, subject: &Subject, roles: &Roles<'_>) {
     text.push_str(
         "\n# The parameters to estimate. Fix known values, `NAME = { fixed = 1.5 }`, or delete \
          the line: then the\n\
@@ -253,15 +230,14 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
     );
     let mut count = 0;
     let mut whole: Vec<&str> = Vec::new();
-    for parameter in model.program.parameters().iter().filter(|parameter| parameter.top_level) {
-        let is_number = matches!(parameter.base, crate::flatten::BaseType::Real);
+    for parameter in &subject.parameters {
         let is_data =
-            roles.outputs.iter().chain(&roles.inputs).any(|own| *own.variable == *parameter.name);
-        if !is_number || is_data {
+            roles.outputs.iter().chain(&roles.inputs).any(|own| own.variable == parameter.name);
+        if is_data {
             continue;
         }
-        if let Some((array, elements)) = array_of(model, &parameter.name) {
-            if !whole.contains(&array) {
+        if let Some((array, elements)) = &parameter.table {
+            if !whole.contains(&array.as_str()) {
                 whole.push(array);
                 _ = writeln!(
                     text,
@@ -272,47 +248,22 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
             continue;
         }
         count += 1;
-        let computed = computed(model, flat, &parameter.name);
-        let measured = measured_start(flat, roles, &parameter.name);
-        text.push_str(&parameter_line(parameter, computed, measured));
+        let measured = measured_start(&subject.flat, roles, &parameter.name);
+        text.push_str(&parameter_line(parameter, measured));
     }
     if count == 0 {
         text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
     }
 }
 
-/// The array of which a parameter is an element, and its number of elements, where these are a table
-/// or a polynomial rather than quantities to be estimated one by one: matrices, and vectors of more
-/// than a few.
-fn array_of<'p>(model: &Translated, element: &'p str) -> Option<(&'p str, usize)> {
-    /// Longer vectors are tables.
-    const FEW: usize = 4;
-    let (array, _) = element.strip_suffix(']')?.rsplit_once('[')?;
-    let dims = &model.declarations.get(array)?.dims;
-    let elements = dims.iter().product();
-    (dims.len() > 1 || elements > FEW).then_some((array, elements))
-}
-
-/// What the model computes a parameter from; `None` where it depends on no other one.
-fn computed(model: &Translated, flat: &FlatModel, name: &str) -> Option<String> {
-    let declared =
-        model.declarations.get(name).filter(|declared| !declared.computed_from.is_empty());
-    let binding = declared.and_then(|_| flat.variables.get(name)?.binding.as_ref());
-    binding.map(crate::syntax::print::expression)
-}
-
 /// The line of a parameter, with what is known of it; a comment where there is nothing to estimate.
-fn parameter_line(
-    parameter: &ParameterInfo,
-    computed: Option<String>,
-    measured: Option<[f64; 2]>,
-) -> String {
+fn parameter_line(parameter: &Estimable, measured: Option<[f64; 2]>) -> String {
     let mut about = Vec::new();
     if !parameter.unit.is_empty() {
-        about.push(parameter.unit.to_string());
+        about.push(parameter.unit.clone());
     }
     if !parameter.description.is_empty() {
-        about.push(parameter.description.to_string());
+        about.push(parameter.description.clone());
     }
     let name = key(&parameter.name);
     let [least, most] = fraction(parameter).unwrap_or([parameter.min, parameter.max]);
@@ -322,7 +273,7 @@ fn parameter_line(
         Some(range) => Some((range, "around the first measured value".to_owned())),
         None => range(parameter),
     };
-    let (mark, [min, max], why) = match (computed, range) {
+    let (mark, [min, max], why) = match (&parameter.computed, range) {
         (Some(binding), range) => {
             let range = range.map_or([0.1, 10.0], |(range, _)| range);
             ("# ", range, format!("the model computes it: {binding}"))
@@ -353,11 +304,11 @@ fn measured_start(flat: &FlatModel, roles: &Roles<'_>, parameter: &str) -> Optio
 
 /// What a fraction can be: 0 to 1, within the declared limits. A parameter is one if its value lies there
 /// and its unit is 1, or if it has none and its name or description says so.
-fn fraction(parameter: &ParameterInfo) -> Option<[f64; 2]> {
+fn fraction(parameter: &Estimable) -> Option<[f64; 2]> {
     const WORDS: [&str; 5] = ["soc", "fraction", "efficiency", "emissivity", "porosity"];
     let about = format!("{} {}", parameter.name, parameter.description).to_lowercase();
     let mut words = about.split(|letter: char| !letter.is_alphanumeric());
-    let mut is_said = || match &*parameter.unit {
+    let mut is_said = || match parameter.unit.as_str() {
         "1" => true,
         "" => words.any(|own| WORDS.iter().any(|word| own.starts_with(word))),
         _ => false,
@@ -369,10 +320,10 @@ fn fraction(parameter: &ParameterInfo) -> Option<[f64; 2]> {
 
 /// A range and where it comes from: the model's own, that of a fraction, else 20 degrees to both sides of a
 /// temperature on a scale with an offset, and a decade to both sides of any other value.
-fn range(parameter: &ParameterInfo) -> Option<([f64; 2], String)> {
+fn range(parameter: &Estimable) -> Option<([f64; 2], String)> {
     /// Degrees to both sides.
     const AROUND: f64 = 20.0;
-    let ParameterInfo { min, max, default: value, .. } = *parameter;
+    let Estimable { min, max, default: value, .. } = *parameter;
     let has_offset = written(&parameter.unit).is_some_and(|unit| unit.offset != 0.0);
     // 1e-60 and 1e60 stand for no limit in some libraries.
     let limited = |limit: f64| limit.is_finite() && limit.abs() < 1e20;

@@ -89,9 +89,10 @@ impl Rewrite for QuotedNames {
 /// # Errors
 ///
 /// Infinite numbers and NaN.
-pub(super) fn literal(value: ValueEntry, name: &str, place: Span) -> Result<Expression, Fault> {
+pub(super) fn literal(value: &ValueEntry, name: &str, place: Span) -> Result<Expression, Fault> {
     let kind = match value {
-        ValueEntry::Truth(value) => ExpressionKind::Boolean(value),
+        ValueEntry::Truth(value) => ExpressionKind::Boolean(*value),
+        ValueEntry::Text(text) => ExpressionKind::String(text.as_str().into()),
         ValueEntry::Number(_) => match value.number(name)? {
             whole if whole.fract() == 0.0 && whole.abs() <= MOST => {
                 ExpressionKind::Integer(whole as i64)

@@ -10,7 +10,7 @@ use super::series::Comparison;
 use super::{dynamics, enclosing_class, parameters, time_axis};
 use crate::Session;
 use crate::codegen::Program;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{At as _, Diagnostic, Fault};
 use crate::flatten::{self, FlatModel};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
@@ -74,6 +74,17 @@ pub(super) struct Abscissa {
     column: Column,
     /// Times of inputs that follow the rows; X itself where it is not time.
     pub time: Vec<f64>,
+}
+
+/// A model that is compared with data.
+pub(super) struct Subject {
+    pub model: Arc<dyn Model>,
+    /// What it says of its experiment.
+    pub annotated: flatten::Experiment,
+    /// Where its own simulation ends, if it says so; `None` where times have no meaning.
+    pub stop: Option<Option<f64>>,
+    /// The free parameters with their names in it.
+    pub parameters: Vec<(usize, String)>,
 }
 
 /// The model of an experiment in its class.
@@ -146,7 +157,6 @@ impl Source<'_> {
         session: &mut Session,
         notes: &mut Notes,
     ) -> Result<Built, Vec<Diagnostic>> {
-        let name = self.segment.name.clone();
         let abscissa = self.abscissa(notes);
         let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.x)])?;
         let class = self.class(session, &abscissa, notes)?;
@@ -160,60 +170,71 @@ impl Source<'_> {
             }
             false => CompiledModel::new(&self.file.model, program.clone()),
         };
-        let model: Arc<dyn Model> = Arc::new(compiled);
-        let (entry, table) = (self.entry, self.table);
-        let mut comparison = Comparison {
-            experiment: &name,
-            entry,
-            table,
-            model: &*model,
-            x_name: &abscissa.name,
-            x: Vec::new(),
-            start: 0.0,
-        };
-        comparison.x = abscissa.in_unit(&comparison, notes).map_err(one)?;
-        let annotated = program.experiment();
-        let begin = self.begin(annotated.start_time, &comparison, notes);
-        let settings = self.settings(session, &annotated, begin, &comparison).map_err(one)?;
-        comparison.start = settings.start;
         let has_states = !program.sorted().states.is_empty();
-        if has_states {
-            self.note_times(session, &comparison, &abscissa, notes)?;
-        }
-        let (observations, series) =
-            comparison.outputs(&class.observed, notes).map_err(|e| vec![e])?;
-        if observations.is_empty() {
-            return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
-        }
-        let experiment = Experiment {
-            name,
-            model,
-            settings,
-            second_attempt: true,
-            x_name: abscissa.name,
-            observations,
+        let base = Base::of(&self.file.model, self.file.places.model).map_err(|e| vec![e])?;
+        let class_stop = session.classes.library.definition(&base.class);
+        let class_stop = class_stop.and_then(|class| flatten::experiment(&class).stop_time);
+        let subject = Subject {
+            model: Arc::new(compiled),
+            annotated: program.experiment(),
+            stop: has_states.then_some(class_stop),
             parameters: class.parameters,
         };
+        let (experiment, series) =
+            self.compare(session, subject, (&abscissa, &class.observed), notes)?;
         let error = if has_states { error_of(&program, &experiment.settings) } else { 0.0 };
         let undecided = class.undecided;
         Ok(Built { experiment, series, error, program: Some(program), undecided })
     }
 
-    /// Says where the times of the data and of the simulation do not agree.
-    fn note_times(
+    /// The comparison of a model with the data.
+    ///
+    /// # Errors
+    ///
+    /// Columns and settings that make no sense; nothing to compare.
+    pub(super) fn compare(
         &self,
         session: &Session,
-        comparison: &Comparison<'_>,
-        abscissa: &Abscissa,
+        subject: Subject,
+        (abscissa, observed): (&Abscissa, &[String]),
         notes: &mut Notes,
-    ) -> Result<(), Vec<Diagnostic>> {
-        note_start(comparison, notes);
-        let base = Base::of(&self.file.model, self.file.places.model).map_err(|e| vec![e])?;
-        let annotated = session.classes.library.definition(&base.class);
-        let annotated = annotated.and_then(|class| flatten::experiment(&class).stop_time);
-        note_stop(comparison, abscissa, annotated, notes);
-        note_unused_stop(comparison, notes);
-        Ok(())
+    ) -> Result<(Experiment, Vec<Series>), Vec<Diagnostic>> {
+        let Subject { model, annotated, stop, parameters } = subject;
+        let name = self.segment.name.clone();
+        let mut comparison = Comparison {
+            experiment: &name,
+            entry: self.entry,
+            table: self.table,
+            model: &*model,
+            x_name: &abscissa.name,
+            x: Vec::new(),
+            start: 0.0,
+        };
+        let x = abscissa.in_unit(&comparison, notes).at(self.entry.places.x);
+        comparison.x = x.map_err(|error| vec![error])?;
+        let begin = self.begin(annotated.start_time, &comparison, notes);
+        let settings = self.settings(session, &annotated, begin, &comparison).map_err(one)?;
+        comparison.start = settings.start;
+        if let Some(stop) = stop {
+            note_start(&comparison, notes);
+            note_stop(&comparison, abscissa, stop, notes);
+            note_unused_stop(&comparison, notes);
+        }
+        let (observations, series) =
+            comparison.outputs(observed, notes).map_err(|error| vec![error])?;
+        if observations.is_empty() {
+            return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
+        }
+        let experiment = Experiment {
+            name,
+            model: model.clone(),
+            settings,
+            second_attempt: true,
+            x_name: abscissa.name.clone(),
+            observations,
+            parameters,
+        };
+        Ok((experiment, series))
     }
 
     /// Refuses names that the model does not have, and values that it cannot be given.

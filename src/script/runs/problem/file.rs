@@ -68,11 +68,13 @@ impl Deref for ParameterEntry {
     }
 }
 
-/// A number, `true` or `false`: the value of a parameter or the initial value of a state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The value of a parameter or the initial value of a state.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum ValueEntry {
     Number(f64),
     Truth(bool),
+    /// A String; of an FMU also a literal of an enumeration.
+    Text(String),
 }
 
 /// What the table of a parameter holds.
@@ -464,9 +466,9 @@ impl ParameterEntry {
         if let Some((which, Some(limit))) = infinite {
             bail!(BAD_OPTION, "`{which}` of `{name}` is {limit}"; help: "write a finite number");
         }
-        match (self.min, self.max, self.fixed, &self.tied) {
+        match (self.min, self.max, &self.fixed, &self.tied) {
             (Some(min), Some(max), None, None) => Ok(Role::Free { range: [min, max], logarithmic }),
-            (None, None, Some(value), None) => Ok(Role::Fixed(value)),
+            (None, None, Some(value), None) => Ok(Role::Fixed(value.clone())),
             (None, None, None, Some(expression)) => Ok(Role::Tied(expression.clone())),
             _ => bail!(
                 BAD_OPTION,
@@ -482,15 +484,18 @@ impl ValueEntry {
     ///
     /// # Errors
     ///
-    /// `true` and `false`, infinite numbers and NaN.
-    pub(super) fn number(self, name: &str) -> Result<f64, crate::diag::Fault> {
+    /// Strings, `true` and `false`, infinite numbers and NaN.
+    pub(super) fn number(&self, name: &str) -> Result<f64, crate::diag::Fault> {
         match self {
-            ValueEntry::Number(value) if value.is_finite() => Ok(value),
+            ValueEntry::Number(value) if value.is_finite() => Ok(*value),
             ValueEntry::Number(value) => {
                 bail!(BAD_OPTION, "the value of `{name}` is {value}"; help: "write a finite number")
             }
             ValueEntry::Truth(value) => {
                 bail!(BAD_OPTION, "the value of `{name}` is {value}"; help: "write a number")
+            }
+            ValueEntry::Text(text) => {
+                bail!(BAD_OPTION, "the value of `{name}` is \"{text}\""; help: "write a number")
             }
         }
     }

@@ -106,7 +106,8 @@ in_forms!(
     Forms::<_> {
         number: Some(ValueEntry::Number),
         truth: Some(ValueEntry::Truth),
-        ..Forms::new("a number, `true` or `false`")
+        text: Some(ValueEntry::Text),
+        ..Forms::new("a number, `true`, `false` or a text")
     }
 );
 

@@ -4,20 +4,19 @@
 use super::data::Notes;
 use super::driven::{InputColumns, no_column};
 use super::dynamics;
-use super::experiment::{Abscissa, Built, Source, note_start, note_stop, note_unused_stop};
+use super::experiment::{Abscissa, Built, Source, Subject};
 use super::file::{ExperimentEntry, ProblemFile, Role, ValueEntry};
 use super::inputs::{self, Declared, Times, Undecided};
 use super::parameters::Setting;
-use super::series::Comparison;
 use crate::Session;
 use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::errors::BAD_FMU;
 use crate::fault;
 use crate::flatten::BaseType;
+use crate::fmi::archive::is_unit;
 use crate::fmi::description::{Causality, Kind};
 use crate::fmi::import::{Imported, InterfaceKind, Layout, Samples, is_parameter, why_not_set};
-use crate::identify::problem::Experiment;
 use crate::identify::{ImportedModel, Model};
 use crate::models::imported::{self, Given};
 use crate::models::variable_unit::VariableUnit;
@@ -36,7 +35,7 @@ pub(super) fn unit(
     file: &ProblemFile,
     folder: &Path,
 ) -> Result<Option<Arc<Imported>>, Vec<Diagnostic>> {
-    if !imported::is_unit(Path::new(&file.model)) {
+    if !is_unit(Path::new(&file.model)) {
         return Ok(None);
     }
     let methods = file.experiment.iter().map(|entry| entry.integrator.as_deref());
@@ -71,50 +70,43 @@ pub(super) fn build(
     source: &Source<'_>,
     (session, unit): (&Session, &Arc<Imported>),
     notes: &mut Notes,
-) -> Result<Built, Diagnostic> {
+) -> Result<Built, Vec<Diagnostic>> {
+    let one = |error: Diagnostic| vec![error];
     let entry = source.entry;
-    let abscissa = &source.abscissa(notes).at(entry.places.x)?;
-    refuse_dynamics(source).at(entry.places.data)?;
-    let (given, parameters) = values(source, unit)?;
-    let (samples, undecided) = follow(source, unit, abscissa, notes)?;
-    let model = imported::model(unit, given, samples).at(entry.places.data)?;
-    check_names(&model, entry, &abscissa.name)?;
-    let model: Arc<dyn Model> = Arc::new(model);
-    let name = source.segment.name.clone();
-    let mut comparison = Comparison {
-        experiment: &name,
-        entry,
-        table: source.table,
-        model: &*model,
-        x_name: &abscissa.name,
-        x: Vec::new(),
-        start: 0.0,
-    };
-    comparison.x = abscissa.in_unit(&comparison, notes).at(entry.places.x)?;
-    let annotated = imported::experiment(&unit.description);
-    let begin = source.begin(annotated.start_time, &comparison, notes);
-    let settings = source.settings(session, &annotated, begin, &comparison).at(Span::NONE)?;
-    comparison.start = settings.start;
-    note_start(&comparison, notes);
-    note_stop(&comparison, abscissa, annotated.stop_time, notes);
-    note_unused_stop(&comparison, notes);
-    let observed: Vec<String> = entry.all_outputs().map(|(name, _)| name.clone()).collect();
-    let (observations, series) = comparison.outputs(&observed, notes)?;
-    if observations.is_empty() {
-        return Err(fault!(BAD_OPTION, "{name} has no outputs to compare").at(Span::NONE));
+    let abscissa = &source.abscissa(notes).at(entry.places.x).map_err(one)?;
+    refuse_dynamics(source).at(entry.places.data).map_err(one)?;
+    let (given, parameters) = values(source, unit).map_err(one)?;
+    let (samples, undecided) = follow(source, unit, abscissa, notes).map_err(one)?;
+    let model = imported::model(unit, given, samples).at(entry.places.data).map_err(one)?;
+    check_names(&model, entry, &abscissa.name).map_err(one)?;
+    if let Some(sentence) = fixed_steps(unit) {
+        notes.add(sentence);
     }
-    let error = settings.tolerance;
-    let x_name = abscissa.name.clone();
-    let experiment = Experiment {
-        name,
-        model: model.clone(),
-        settings,
-        second_attempt: true,
-        x_name,
-        observations,
-        parameters,
-    };
+    let model: Arc<dyn Model> = Arc::new(model);
+    let annotated = unit.description.experiment.annotation();
+    let stop = Some(annotated.stop_time);
+    let subject = Subject { model, annotated, stop, parameters };
+    let observed: Vec<String> = entry.all_outputs().map(|(name, _)| name.clone()).collect();
+    let (experiment, series) = source.compare(session, subject, (abscissa, &observed), notes)?;
+    let error = experiment.settings.tolerance;
     Ok(Built { experiment, series, error, program: None, undecided })
+}
+
+/// What fixed steps of a unit do to a fit: events lie on them. The reference unit `BouncingBall` has steps
+/// of 0.001 s; a fit of its co-simulation takes a hundred times the simulations of one of its model exchange,
+/// and finds no minimum.
+fn fixed_steps(unit: &Imported) -> Option<String> {
+    let own = unit.description.co_simulation.as_ref()?;
+    let step = own.fixed_internal_step.filter(|_| unit.kind == InterfaceKind::CoSimulation)?;
+    let remedy = match unit.description.model_exchange.is_some() {
+        true => "model exchange, which it offers too, has no such jumps: leave out `integrator`",
+        false => "export it for model exchange, or with smaller steps",
+    };
+    Some(format!(
+        "`{}` integrates itself with steps of {step} s: where it has events its results jump when parameters \
+         change, and there may be no intervals; {remedy}",
+        unit.file
+    ))
 }
 
 /// Refuses what becomes a part of the class around a Modelica model.
@@ -152,7 +144,7 @@ fn values(
             Role::Free { .. } => {
                 names.push((setting.free_place(name, parameter).at(place)?, name.clone()));
             }
-            Role::Fixed(value) => set(&mut given, unit, name, value).at(place)?,
+            Role::Fixed(value) => set(&mut given, unit, name, &value).at(place)?,
             Role::Tied(_) => {
                 let fault = fault!(
                     BAD_OPTION,
@@ -170,7 +162,7 @@ fn values(
                 help: "remove one of the two");
             return Err(fault.at(place));
         }
-        set(&mut given, unit, name, *value).at(place)?;
+        set(&mut given, unit, name, value).at(place)?;
     }
     let layout = unit.layout(&given.numbers);
     let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
@@ -180,9 +172,10 @@ fn values(
     Ok((given, names))
 }
 
-fn set(given: &mut Given, unit: &Imported, name: &str, value: ValueEntry) -> Result<(), Fault> {
+fn set(given: &mut Given, unit: &Imported, name: &str, value: &ValueEntry) -> Result<(), Fault> {
     match value {
-        ValueEntry::Truth(value) => given.set(unit, name, f64::from(u8::from(value))),
+        ValueEntry::Truth(value) => given.set(unit, name, f64::from(u8::from(*value))),
+        ValueEntry::Text(text) => given.add(unit, name, text),
         ValueEntry::Number(_) => given.set(unit, name, value.number(name)?),
     }
 }

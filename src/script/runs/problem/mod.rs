@@ -12,6 +12,7 @@ mod constraint;
 mod control;
 mod data;
 mod draft;
+mod draft_subject;
 mod driven;
 mod dynamics;
 mod enclosing_class;
@@ -49,19 +50,21 @@ use super::checkpoint::{self, Checkpoint, keep_old};
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::fmi::ParameterSet;
+use crate::fmi::archive::is_unit;
 use crate::fmi::parameter_set::{Estimate, Parameter, ParameterValue};
 use crate::identify::problem::{
     self as solving, EndingKind, Importance, ModelSimulator, Origins, Run, Simulate, Solution,
     SolvedParameter, SolvedSeries,
 };
 use crate::identify::ranks::{Ranks, Traffic};
-use crate::models::imported::{is_unit, note_messages};
+use crate::models::imported::{note_messages, refuse_as_text};
 use crate::registry::BAD_OPTION;
 use crate::sim::TimeBudget;
 use crate::source::Span;
 use crate::value::RecordValue;
 use crate::{bail, fault};
-pub use draft::{Draft, DraftOptions, Question, draft};
+pub use draft::{Draft, Question, draft};
+pub use draft_subject::DraftOptions;
 pub use driven::{Driven, driven, note_outside};
 pub use imported::{FollowedInputs, inputs_of};
 pub use shards::{Division, read_shards};
@@ -132,6 +135,7 @@ pub fn solve(
     options: &RunOptions,
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    refuse_as_text(path, "a problem file").map_err(one)?;
     let bytes = session.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;

@@ -59,7 +59,7 @@ impl Setting<'_> {
                     names.push((free, own.clone()));
                     enclosing_class::reference(&own, place)
                 }
-                Role::Fixed(value) => enclosing_class::literal(value, name, place).at(place)?,
+                Role::Fixed(value) => enclosing_class::literal(&value, name, place).at(place)?,
                 Role::Tied(text) => self.tied(name, &text)?,
             };
             if dynamics::is_delay(self.file, name) {
@@ -155,7 +155,7 @@ impl Setting<'_> {
                 );
                 return Err(fault.at(place));
             }
-            let value = enclosing_class::literal(*value, name, place).at(place)?;
+            let value = enclosing_class::literal(value, name, place).at(place)?;
             enclosing.bind(name, value, place);
         }
         for (name, value) in &entry.start {
@@ -169,7 +169,7 @@ impl Setting<'_> {
                 );
                 return Err(fault.at(place));
             }
-            let value = enclosing_class::literal(*value, name, place).at(place)?;
+            let value = enclosing_class::literal(value, name, place).at(place)?;
             enclosing.start(name, value, place);
         }
         Ok(())
@@ -229,14 +229,15 @@ pub(super) fn check_taken(
 ) -> Result<(), Diagnostic> {
     let fixed = file.parameters.iter().filter_map(|(name, parameter)| {
         let is_value = !parameter.initial && !dynamics::is_delay(file, name);
-        let value = parameter.fixed.filter(|_| is_value)?;
+        let value = parameter.fixed.as_ref().filter(|_| is_value)?;
         Some((name, value, file.places.parameter(name)))
     });
-    let set = entry.set.values.iter().map(|(name, value)| (name, *value, entry.places.value(name)));
+    let set = entry.set.values.iter().map(|(name, value)| (name, value, entry.places.value(name)));
     for (name, value, place) in fixed.chain(set) {
         let requested = match value {
-            ValueEntry::Number(number) => number,
-            ValueEntry::Truth(truth) => f64::from(truth),
+            ValueEntry::Number(number) => *number,
+            ValueEntry::Truth(truth) => f64::from(*truth),
+            ValueEntry::Text(_) => continue,
         };
         let Some(taken) = value_of(model, name).filter(|taken| *taken != requested) else {
             continue;

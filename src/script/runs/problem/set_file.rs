@@ -5,8 +5,6 @@ use super::file::{ProblemFile, ValueEntry};
 use super::flat::variable_unit;
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
-use crate::errors::BAD_FMU;
-use crate::fault;
 use crate::flatten::FlatModel;
 use crate::fmi::import::Imported;
 use crate::fmi::parameter_set::{Parameter, ParameterValue};
@@ -27,8 +25,7 @@ enum Declarations<'u> {
 ///
 /// # Errors
 ///
-/// A file that cannot be read or is none of SSP; values that are Strings, or in units that cannot be
-/// converted.
+/// A file that cannot be read or is none of SSP; values in units that cannot be converted.
 pub(super) fn read(
     session: &mut Session,
     file: &mut ProblemFile,
@@ -49,8 +46,7 @@ pub(super) fn read(
             let (value, sentence) =
                 parameter_sets::in_unit(&parameter, &unit, &own).map_err(one)?;
             sentence.into_iter().for_each(|sentence| notes.add(sentence));
-            let value = value_entry(value, &parameter.name, &own).map_err(one)?;
-            entry.set.values.insert(parameter.name, value);
+            entry.set.values.insert(parameter.name, value_entry(value));
         }
     }
     Ok(())
@@ -83,14 +79,10 @@ impl Declarations<'_> {
     }
 }
 
-fn value_entry(value: ParameterValue, name: &str, file: &Path) -> Result<ValueEntry, Fault> {
+fn value_entry(value: ParameterValue) -> ValueEntry {
     match value {
-        ParameterValue::Number(value) => Ok(ValueEntry::Number(value)),
-        ParameterValue::Truth(value) => Ok(ValueEntry::Truth(value)),
-        ParameterValue::Text(_) => Err(fault!(
-            BAD_FMU,
-            "`{name}` in `{}` is a String, which an experiment cannot set", file.display();
-            help: "remove it there, and modify the model: `model = \"Class(name = …)\"`"
-        )),
+        ParameterValue::Number(value) => ValueEntry::Number(value),
+        ParameterValue::Truth(value) => ValueEntry::Truth(value),
+        ParameterValue::Text(text) => ValueEntry::Text(text),
     }
 }
