@@ -5,8 +5,7 @@
 //! `VanDerPol/VanDerPol_out.csv`); their expected outputs are those of the explicit Euler method.
 
 use crate::support::program::{command, folder, gapi};
-use gapilib::internals::fmi::parameter_set::{Parameter, ParameterValue};
-use gapilib::internals::fmi::{Archive, ParameterSet};
+use gapilib::internals::fmi::Archive;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -23,7 +22,7 @@ const NOT_A_NUMBER: u32 = 7;
 const WRITE: u32 = 8;
 
 /// The folder of binaries for this machine, by version.
-fn platform(version: u8) -> Option<&'static str> {
+pub(super) fn platform(version: u8) -> Option<&'static str> {
     match (version, cfg!(all(target_os = "linux", target_arch = "x86_64"))) {
         (2, true) => Some("linux64"),
         (3, true) => Some("x86_64-linux"),
@@ -136,14 +135,14 @@ fn with_unit(version: u8) -> Option<TempDir> {
 }
 
 /// The columns of the results of a simulation.
-fn simulated(here: &TempDir, more: &[&str]) -> Vec<(String, Vec<f64>)> {
+pub(super) fn simulated(here: &TempDir, more: &[&str]) -> Vec<(String, Vec<f64>)> {
     let base = ["simulate", "unit.fmu", "--allow-external=unit.fmu", "--output", "r.csv"];
     let (code, _, errors) = gapi(here, &[&base, more].concat());
     assert_eq!(code, 0, "{errors}");
     columns(&here.path().join("r.csv"))
 }
 
-fn columns(path: &Path) -> Vec<(String, Vec<f64>)> {
+pub(super) fn columns(path: &Path) -> Vec<(String, Vec<f64>)> {
     let mut csv = csv::Reader::from_path(path).expect("results");
     let names = csv.headers().expect("a header").clone();
     let name = |text: &str| text.split(" [").next().unwrap_or_default().to_owned();
@@ -158,12 +157,12 @@ fn columns(path: &Path) -> Vec<(String, Vec<f64>)> {
     all
 }
 
-fn column<'c>(all: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
+pub(super) fn column<'c>(all: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
     let found = all.iter().find(|(known, _)| known == name);
     &found.unwrap_or_else(|| panic!("no `{name}`")).1
 }
 
-fn near(found: f64, expected: f64, tolerance: f64) {
+pub(super) fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }
 
@@ -184,6 +183,23 @@ fn units_of_both_versions_and_kinds_are_simulated() {
             assert_eq!(column(&all, "k")[0], 2.0);
         }
     }
+}
+
+/// Points that differ by rounding alone are two rows, also where the unit steps from one to the next.
+#[test]
+fn data_points_that_differ_by_rounding_are_compared() {
+    let Some(here) = with_unit(3) else { return };
+    let times = [0.0, 0.1 + 0.2, 0.3, 0.7 + 0.1 + 0.1, 0.9, 0.1 + 0.7 + 0.1, 1.1 * 1.1, 1.21];
+    let mut times = times.to_vec();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let row = |t: &f64| format!("{t},{}\n", 3.0 * (-2.0 * t).exp() + 1e-3 * (37.0 * t).sin());
+    let rows: String = times.iter().map(row).collect();
+    fs::write(here.path().join("d.csv"), format!("time,y\n{rows}")).expect("written");
+    let problem = format!("{PROBLEM}integrator = \"co-simulation\"\n");
+    fs::write(here.path().join("p.toml"), problem).expect("written");
+    let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--allow-external"]);
+    assert!(code == 0 && !out.contains("ended early"), "{out}{errors}");
 }
 
 /// How a unit of FMI 3.0 is built of a file.
@@ -331,6 +347,7 @@ fn arrays_and_all_types_are_set() {
         ("fault=0.5", "is Int32 and cannot be 0.5"),
         ("y=1", "is computed by the FMU"),
         ("kk=1", "did you mean `k`?"),
+        ("labl=a", "did you mean `label`?"),
         ("gain_on=perhaps", "cannot be `perhaps`"),
     ] {
         let (code, out, errors) = gapi(&here, &[&base[..], &["--set", set]].concat());
@@ -401,302 +418,6 @@ fn a_call_that_does_not_return_is_ended() {
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(1) && errors.contains(said), "{seconds}: {errors}");
     }
-}
-
-/// The runtime of exported units, as the build has left it.
-fn runtime() -> PathBuf {
-    let here = std::env::current_exe().expect("this program");
-    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    here.with_file_name(format!("{prefix}gapilib_fmu{suffix}"))
-}
-
-/// What a run left, with the runtime of exported units.
-fn exporting(here: &TempDir, arguments: &[&str]) -> (i32, String, String) {
-    let mut child = command(here.path(), arguments);
-    let output = child.env("GAPILIB_FMU_RUNTIME", runtime()).output().expect("it ends");
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    (output.status.code().unwrap_or(-1), text(output.stdout), text(output.stderr))
-}
-
-const DECAY: &str = "package P model Decay parameter Real k(unit = \"1/s\") = 1; \
-                     parameter Real level = 3; output Real y = level*x; \
-                     Real x(start = 1, fixed = true); equation der(x) = -k*x; \
-                     annotation(experiment(StopTime = 1, Tolerance = 1e-9)); end Decay; end P;\n";
-
-/// Scripts of both dialects write units with the values that they have set, and simulate them.
-#[test]
-fn scripts_write_and_simulate_units() {
-    if platform(3).is_none() {
-        return;
-    }
-    let dymola = "openModel(\"P.mo\")\ntranslateModel(\"P.Decay\")\nk = 2\n\
-                  name = translateModelFMU(\"P.Decay\", fmiVersion=\"3\")\n\
-                  importFMU(name + \".fmu\")\n\
-                  simulateModel(\"P_Decay_fmu(level = 5)\", stopTime=0.5, resultFile=\"a\")\n\
-                  y = readTrajectory(\"a.mat\", {\"y\"}, readTrajectorySize(\"a.mat\"))\n\
-                  print(String(y[1, end], significantDigits=9))\n\
-                  (ok, z) = simulateExtendedModel(\"P_Decay_fmu\", stopTime=1, \
-                  initialNames={\"k\", \"x\"}, initialValues={1, 2}, finalNames={\"y\"})\n\
-                  print(String(z[1], significantDigits=9))\n\
-                  importFMU(name + \".fmu\", integrate=false, packageName=\"Own\")\n\
-                  simulateModel(\"Own.P_Decay_fmu\", stopTime=1, resultFile=\"b\")\n\
-                  linearizeModel(\"P_Decay_fmu\")\n\
-                  simulateModel(\"P_Decay_fmu(kk = 1)\")\n";
-    let here = folder(&[("P.mo", DECAY), ("s.mos", dymola)]);
-    let run = ["run", "s.mos", "--allow-external", "--out", "out"];
-    let (_, out, errors) = exporting(&here, &run);
-    let text = format!("{out}{errors}");
-    near(number_after(&text, 0), 15.0 * (-1.0f64).exp() / 3.0, 1e-6);
-    near(number_after(&text, 1), 6.0 * (-1.0f64).exp(), 1e-6);
-    assert!(text.contains("is an FMU, which is not linearized here"), "{text}");
-    assert!(text.contains("has no variable `kk`"), "{text}");
-
-    let openmodelica = "loadFile(\"P.mo\");\nfile := buildModelFMU(P.Decay, version=\"2.0\", \
-                        fmuType=\"me_cs\", fileNamePrefix=\"unit\");\n\
-                        name := importFMU(\"unit.fmu\");\nprint(name + \"\\n\");\n\
-                        simulate(P_Decay_me_FMU, stopTime=1, simflags=\"-override=k=2,x=4\");\n\
-                        print(String(val(y, 1.0)) + \"\\n\");\n";
-    fs::write(here.path().join("o.mos"), openmodelica).expect("written");
-    let run = ["run", "o.mos", "--allow-external", "--out", "own"];
-    let (_, out, errors) = exporting(&here, &run);
-    let text = format!("{out}{errors}");
-    assert!(text.contains("P_Decay_me_FMU"), "{text}");
-    near(number_after(&text, 0), 12.0 * (-2.0f64).exp(), 1e-5);
-}
-
-/// Assertions of a model hold in its unit, too: importers announce completed steps where it has any.
-#[test]
-fn assertions_between_events_hold_in_units() {
-    let text = "model Limited Real x(start = 0, fixed = true); equation der(x) = 1; \
-                assert(x < 0.5, \"x too large\"); end Limited;";
-    let here = folder(&[("Limited.mo", text)]);
-    for version in ["2", "3"] {
-        let export = ["export-fmu", "Limited.mo", "--model", "Limited", "--fmi", version];
-        let (code, out, errors) = exporting(&here, &[&export[..], &["-o", "unit.fmu"]].concat());
-        assert_eq!(code, 0, "{out}{errors}");
-        for method in ["dassl", "co-simulation"] {
-            let unit = ["simulate", "unit.fmu", "--allow-external", "--method", method];
-            let (code, _, errors) = gapi(&here, &unit);
-            assert!(code == 1 && errors.contains("x too large"), "{method}: {errors}");
-        }
-    }
-}
-
-/// In co-simulation inputs stand still during a step, which is said; their column has their own values.
-#[test]
-fn inputs_held_between_communication_points_are_noted() {
-    let text =
-        "model Sum input Real u; Real x(start = 0, fixed = true); equation der(x) = u; end Sum;";
-    let here = folder(&[("Sum.mo", text), ("u.csv", "time,u\n0,0\n1,1\n2,0\n")]);
-    let (code, out, errors) =
-        exporting(&here, &["export-fmu", "Sum.mo", "--model", "Sum", "-o", "unit.fmu"]);
-    assert_eq!(code, 0, "{out}{errors}");
-    let unit = ["simulate", "unit.fmu", "--allow-external", "--input", "u.csv", "--method"];
-    for (method, is_noted) in [("co-simulation", true), ("dassl", false)] {
-        let (code, _, errors) =
-            gapi(&here, &[&unit[..], &[method, "--output", "o.csv", "--stop-time", "2"]].concat());
-        assert_eq!(code, 0, "{errors}");
-        let all = columns(&here.path().join("o.csv"));
-        for (t, u) in column(&all, "time").iter().zip(column(&all, "u")) {
-            near(*u, 1.0 - (t - 1.0).abs(), 1e-9);
-        }
-        let note = "during a step the inputs `u` have their values at its beginning";
-        assert_eq!(errors.contains(note), is_noted, "{errors}");
-    }
-}
-
-/// What a unit is not made for is refused as it is for a model.
-#[test]
-fn values_outside_the_range_of_a_unit_are_refused() {
-    let text = "model Tank type Level = enumeration(low, high); \
-                parameter Real A(min = 0.01) = 1; parameter Level at = Level.low; \
-                Real x(start = 1, fixed = true); Real y; equation der(x) = -A*x; \
-                y = if at == Level.low then 1 else 2; end Tank;";
-    let here = folder(&[("Tank.mo", text)]);
-    let export = ["export-fmu", "Tank.mo", "--model", "Tank", "-o", "unit.fmu"];
-    let (code, out, errors) = exporting(&here, &export);
-    assert_eq!(code, 0, "{out}{errors}");
-    let unit = ["simulate", "unit.fmu", "--allow-external", "--set"];
-    for (value, expected) in [
-        ("A=-1", "`A` of `unit.fmu` is -1, outside its range from 0.01 to inf"),
-        ("at=7", "`at` of `unit.fmu` cannot be 7"),
-    ] {
-        let (code, _, errors) = gapi(&here, &[&unit[..], &[value]].concat());
-        assert!(code == 1 && errors.contains(expected), "{errors}");
-    }
-    for value in ["A=0.01", "at=high"] {
-        let (code, _, errors) = gapi(&here, &[&unit[..], &[value]].concat());
-        assert_eq!(code, 0, "{errors}");
-    }
-}
-
-/// The number that stands alone in a line, the one of this number.
-fn number_after(text: &str, which: usize) -> f64 {
-    let mut numbers = text.lines().filter_map(|line| line.trim().parse::<f64>().ok());
-    numbers.nth(which).unwrap_or_else(|| panic!("no number in {text}"))
-}
-
-/// The estimates of a fit go into a unit and into a second fit by the file that the first has left.
-#[test]
-fn the_estimates_of_a_fit_are_given_away() {
-    if platform(3).is_none() {
-        return;
-    }
-    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-3 * (37.0 * t).sin());
-    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
-    let problem = "model = \"P.Decay\"\nfiles = [\"P.mo\"]\n[parameters]\n\
-                   k = { min = 0.1, max = 10 }\nlevel = { min = 0.1, max = 10 }\n\
-                   [[experiment]]\ndata = \"d.csv\"\noutputs = { y = \"y\" }\n";
-    let data = format!("time,y\n{data}");
-    let here = folder(&[("P.mo", DECAY), ("p.toml", problem), ("d.csv", &data)]);
-    let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--out", "o"]);
-    assert_eq!(code, 0, "{out}{errors}");
-    let set = fs::read_to_string(here.path().join("o/parameters.ssv")).expect("estimates");
-    let read = ParameterSet::read(&set).expect("a set");
-    let [k, level] = &read.parameters[..] else { panic!("{set}") };
-    assert_eq!((k.name.as_str(), k.unit.as_deref()), ("k", Some("1/s")));
-    let interval = k.estimate.and_then(|own| own.interval).expect("an interval");
-    assert!(interval[0] < 2.0 && 2.0 < interval[1], "{interval:?}");
-    let base = ["export-fmu", "P.mo", "--model", "P.Decay", "--set-file", "o/parameters.ssv"];
-    let (code, out, errors) = exporting(&here, &[&base[..], &["-o", "unit.fmu"]].concat());
-    assert_eq!(code, 0, "{out}{errors}");
-    assert_eq!(fs::read_to_string(here.path().join("unit.ssv")).expect("a copy"), set);
-    let all = simulated(&here, &["--tolerance", "1e-9"]);
-    let number = |own: &Parameter| match own.value {
-        ParameterValue::Number(value) => value,
-        _ => f64::NAN,
-    };
-    let (k, level) = (number(k), number(level));
-    let last = |all: &[(String, Vec<f64>)]| *column(all, "y").last().expect("a row");
-    near(last(&all), level * (-k).exp(), 1e-6);
-    let set_file = ["--set-file", "o/parameters.ssv"];
-    let model = ["simulate", "P.mo", "--model", "P.Decay", "--output", "m.csv"];
-    let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
-    assert_eq!(code, 0, "{out}{errors}");
-    near(last(&columns(&here.path().join("m.csv"))), level * (-k).exp(), 1e-6);
-
-    // A second fit of another parameter with the values of the first.
-    for model in ["P.Decay\"\nfiles = [\"P.mo\"]", "unit.fmu\""] {
-        let second = format!(
-            "model = \"{model}\n[parameters]\nx = {{ min = 0.1, max = 10, initial = true }}\n\
-             [[experiment]]\ndata = \"d.csv\"\nset = \"o/parameters.ssv\"\n\
-             outputs = {{ y = \"y\" }}\n"
-        );
-        fs::write(here.path().join("q.toml"), &second).expect("written");
-        let identify = ["identify", "q.toml", "--allow-external", "--out", "q"];
-        let (code, out, errors) = gapi(&here, &identify);
-        assert_eq!(code, 0, "{out}{errors}");
-        let text = fs::read_to_string(here.path().join("q/result.json")).expect("a result");
-        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        near(result["parameters"][0]["value"].as_f64().expect("a number"), 1.0, 1e-3);
-    }
-    // The same values in another unit.
-    let per_hour = ParameterSet {
-        name: "hours".to_owned(),
-        parameters: vec![Parameter {
-            name: "k".to_owned(),
-            value: ParameterValue::Number(3600.0 * k),
-            unit: Some("1/h".to_owned()),
-            estimate: None,
-        }],
-    };
-    fs::write(here.path().join("hours.ssv"), per_hour.to_xml()).expect("written");
-    let second = |model: &str| {
-        format!(
-            "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\nlevel = {{ min = 0.1, max = 10 }}\n\
-             [[experiment]]\ndata = \"d.csv\"\nset = \"hours.ssv\"\noutputs = {{ y = \"y\" }}\n"
-        )
-    };
-    for model in ["P.Decay", "unit.fmu"] {
-        fs::write(here.path().join("h.toml"), second(model)).expect("written");
-        let identify = ["identify", "h.toml", "--allow-external", "--out", "h"];
-        let (code, out, errors) = gapi(&here, &identify);
-        assert_eq!(code, 0, "{out}{errors}");
-        let sentence =
-            "`k` in `hours.ssv` is converted from 1/h to 1/s, times 0.000277777777777778";
-        let text = fs::read_to_string(here.path().join("h/result.json")).expect("a result");
-        assert!(text.contains(sentence), "{text}");
-        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        near(result["parameters"][0]["value"].as_f64().expect("a number"), level, 1e-4);
-    }
-    for model in [&["simulate", "P.mo", "--model", "P.Decay"][..], &["simulate", "unit.fmu"]] {
-        let rest = ["--output", "m.csv", "--allow-external", "--set-file", "hours.ssv"];
-        let (code, out, errors) = gapi(&here, &[model, &rest].concat());
-        assert_eq!(code, 0, "{out}{errors}");
-        assert!(errors.contains("is converted from 1/h to 1/s"), "{out}{errors}");
-    }
-    let wrong = set.replace("unit=\"1/s\"", "unit=\"K\"");
-    fs::write(here.path().join("o/parameters.ssv"), wrong).expect("written");
-    let (code, out, errors) =
-        gapi(&here, &["identify", "q.toml", "--allow-external", "--out", "r"]);
-    let said = "`k` in `o/parameters.ssv` is in K, which cannot be converted to 1/s";
-    assert!(code == 1 && errors.contains(said), "{out}{errors}");
-    let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
-    assert!(code == 1 && errors.contains(said), "{out}{errors}");
-}
-
-/// Compares the estimates of two fits, and their standard errors.
-fn agree(unit: &serde_json::Value, own: &serde_json::Value) {
-    for at in 0..2 {
-        for what in ["value", "deviation"] {
-            let of = |result: &serde_json::Value| {
-                let found = result["parameters"][at][what].as_f64();
-                found.unwrap_or_else(|| panic!("{what}: {result}"))
-            };
-            near(of(unit), of(own), 1e-5 * of(own).abs());
-        }
-    }
-}
-
-/// Derivatives by parameters and initial values are those that a unit of FMI 3.0 offers; they lead to the
-/// estimates and standard errors of the model. FMI 2.0 has none, and after an event nobody knows them.
-#[test]
-fn derivatives_of_a_unit_are_exact_where_it_offers_them() {
-    if platform(3).is_none() {
-        return;
-    }
-    let jumping = DECAY.replace("end Decay;", "end Decay; model Jump extends Decay; equation \
-                                 when sample(0.5, 10) then reinit(x, 0.5*pre(x)); end when; end Jump; \
-                                 model Begun parameter Real x0 = 1; extends Decay(x(start = 2*x0)); \
-                                 end Begun;");
-    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-2 * (37.0 * t).sin());
-    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
-    let here = folder(&[("P.mo", &jumping), ("d.csv", &format!("time,y\n{data}"))]);
-    let fitting = |model: &str, second: &str| {
-        let problem = format!(
-            "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\n\
-             k = {{ min = 0.1, max = 10 }}\n{second} }}\n\
-             [[experiment]]\ndata = \"d.csv\"\ntolerance = 1e-9\noutputs = {{ y = \"y\" }}\n"
-        );
-        fs::write(here.path().join("p.toml"), problem).expect("written");
-        let identify = ["identify", "p.toml", "--allow-external", "--out", "o", "--overwrite"];
-        let (code, out, errors) = gapi(&here, &identify);
-        assert_eq!(code, 0, "{out}{errors}");
-        let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
-        serde_json::from_str::<serde_json::Value>(&text).expect("JSON")
-    };
-    let fitted = |model| fitting(model, "x = { min = 0.1, max = 10, initial = true");
-    let begun = |model| fitting(model, "x0 = { min = 0.1, max = 10");
-    let export = |model: &str, version: &str| {
-        let base = ["export-fmu", "P.mo", "--model", model, "--kind", "me", "-o", "unit.fmu"];
-        let (code, out, errors) = exporting(&here, &[&base[..], &["--fmi", version]].concat());
-        assert_eq!(code, 0, "{out}{errors}");
-    };
-    let says = |result: &serde_json::Value, words: &str| result.to_string().contains(words);
-    let own = fitted("P.Decay");
-    export("P.Decay", "3");
-    let unit = fitted("unit.fmu");
-    assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
-    agree(&unit, &own);
-    // Initial values that follow from a parameter.
-    export("P.Begun", "3");
-    let unit = begun("unit.fmu");
-    assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
-    agree(&unit, &begun("P.Begun"));
-    export("P.Decay", "2");
-    assert!(says(&fitted("unit.fmu"), "because FMUs of FMI 2.0 have no derivatives by parameters"));
-    export("P.Jump", "3");
-    assert!(says(&fitted("unit.fmu"), "because the FMU has"));
 }
 
 const PROBLEM: &str = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
@@ -800,6 +521,8 @@ fn problems_name_what_a_unit_does_not_have() {
         ("k = {", "y = {", "is computed by the FMU and cannot be estimated"),
         ("k = {", "fault = {", "only real numbers can"),
         ("{ y = ", "{ z = ", "has no variable `z`"),
+        ("outputs =", "set = { label = \"refused\" }\noutputs =", "this label is refused"),
+        ("outputs =", "set = { labl = \"a\" }\noutputs =", "did you mean `label`?"),
         ("k = { min = 0.1, max = 10 }", "k = { tied = \"2*x0\" }", "`k` is tied"),
         ("outputs =", "steady_state = true\noutputs =", "`steady_state` of experiment 1"),
         ("outputs =", "inputs = { w = \"y\" }\noutputs =", "its inputs are `u`"),

@@ -24,6 +24,7 @@ mod msl;
 mod multiple_roots;
 mod notices;
 mod oracles;
+mod own_fmus;
 mod recorded_inputs;
 mod reference_problems;
 mod results;

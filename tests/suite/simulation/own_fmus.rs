@@ -1,0 +1,427 @@
+//! Units of our own as a user meets them: written by the program and by scripts, and simulated and fitted as
+//! those of others are.
+
+use super::fmus::{column, columns, near, platform, simulated};
+use crate::support::program::{command, folder, gapi};
+use gapilib::internals::fmi::parameter_set::{Parameter, ParameterValue};
+use gapilib::internals::fmi::{Archive, ParameterSet, description};
+use std::fs;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// The runtime of exported units, as the build has left it.
+fn runtime() -> PathBuf {
+    let here = std::env::current_exe().expect("this program");
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    here.with_file_name(format!("{prefix}gapilib_fmu{suffix}"))
+}
+
+/// What a run left, with the runtime of exported units.
+fn exporting(here: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+    let mut child = command(here.path(), arguments);
+    let output = child.env("GAPILIB_FMU_RUNTIME", runtime()).output().expect("it ends");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (output.status.code().unwrap_or(-1), text(output.stdout), text(output.stderr))
+}
+
+const DECAY: &str = "package P model Decay parameter Real k(unit = \"1/s\") = 1; \
+                     parameter Real level = 3; output Real y = level*x; \
+                     Real x(start = 1, fixed = true); equation der(x) = -k*x; \
+                     annotation(experiment(StopTime = 1, Tolerance = 1e-9)); end Decay; end P;\n";
+
+/// Scripts of both dialects write units with the values that they have set, and simulate them.
+#[test]
+fn scripts_write_and_simulate_units() {
+    if platform(3).is_none() {
+        return;
+    }
+    let dymola = "openModel(\"P.mo\")\ntranslateModel(\"P.Decay\")\nk = 2\n\
+                  name = translateModelFMU(\"P.Decay\", fmiVersion=\"3\")\n\
+                  importFMU(name + \".fmu\")\n\
+                  simulateModel(\"P_Decay_fmu(level = 5)\", stopTime=0.5, resultFile=\"a\")\n\
+                  y = readTrajectory(\"a.mat\", {\"y\"}, readTrajectorySize(\"a.mat\"))\n\
+                  print(String(y[1, end], significantDigits=9))\n\
+                  (ok, z) = simulateExtendedModel(\"P_Decay_fmu\", stopTime=1, \
+                  initialNames={\"k\", \"x\"}, initialValues={1, 2}, finalNames={\"y\"})\n\
+                  print(String(z[1], significantDigits=9))\n\
+                  importFMU(name + \".fmu\", integrate=false, packageName=\"Own\")\n\
+                  simulateModel(\"Own.P_Decay_fmu\", stopTime=1, resultFile=\"b\")\n\
+                  translateModelFMU(\"P.Decay\", modelName=\"Own\")\n\
+                  importFMU(\"Own.fmu\")\n\
+                  simulateModel(\"Own_fmu(k = 3)\", stopTime=1, resultFile=\"c\")\n\
+                  y = readTrajectory(\"c.mat\", {\"y\"}, readTrajectorySize(\"c.mat\"))\n\
+                  print(String(y[1, end], significantDigits=9))\n\
+                  linearizeModel(\"P_Decay_fmu\")\n\
+                  simulateModel(\"P_Decay_fmu(kk = 1)\")\n";
+    let here = folder(&[("P.mo", DECAY), ("s.mos", dymola)]);
+    let run = ["run", "s.mos", "--allow-external", "--out", "out"];
+    let (_, out, errors) = exporting(&here, &run);
+    let text = format!("{out}{errors}");
+    near(number_after(&text, 0), 15.0 * (-1.0f64).exp() / 3.0, 1e-6);
+    near(number_after(&text, 1), 6.0 * (-1.0f64).exp(), 1e-6);
+    near(number_after(&text, 2), 3.0 * (-3.0f64).exp(), 1e-5);
+    assert!(text.contains("is an FMU, which is not linearized here"), "{text}");
+    assert!(text.contains("has no variable `kk`"), "{text}");
+
+    let openmodelica = "loadFile(\"P.mo\");\nfile := buildModelFMU(P.Decay, version=\"2.0\", \
+                        fmuType=\"me_cs\", fileNamePrefix=\"unit\");\n\
+                        name := importFMU(\"unit.fmu\");\nprint(name + \"\\n\");\n\
+                        loadFile(name);\ngetErrorString();\n\
+                        simulate(P_Decay_me_FMU, stopTime=1, simflags=\"-override=k=2,x=4\");\n\
+                        print(String(val(y, 1.0)) + \"\\n\");\n";
+    fs::write(here.path().join("o.mos"), openmodelica).expect("written");
+    let run = ["run", "o.mos", "--allow-external", "--out", "own"];
+    let (_, out, errors) = exporting(&here, &run);
+    let text = format!("{out}{errors}");
+    assert!(text.contains("P_Decay_me_FMU.mo"), "{text}");
+    near(number_after(&text, 0), 12.0 * (-2.0f64).exp(), 1e-5);
+}
+
+/// Assertions of a model hold in its unit, too: importers announce completed steps where it has any.
+#[test]
+fn assertions_between_events_hold_in_units() {
+    let text = "model Limited Real x(start = 0, fixed = true); equation der(x) = 1; \
+                assert(x < 0.5, \"x too large\"); end Limited;";
+    let here = folder(&[("Limited.mo", text)]);
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "Limited.mo", "--model", "Limited", "--fmi", version];
+        let (code, out, errors) = exporting(&here, &[&export[..], &["-o", "unit.fmu"]].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        for method in ["dassl", "co-simulation"] {
+            let unit = ["simulate", "unit.fmu", "--allow-external", "--method", method];
+            let (code, _, errors) = gapi(&here, &unit);
+            assert!(code == 1 && errors.contains("x too large"), "{method}: {errors}");
+        }
+    }
+}
+
+/// In co-simulation inputs stand still during a step, which is said; their column has their own values.
+#[test]
+fn inputs_held_between_communication_points_are_noted() {
+    let text =
+        "model Sum input Real u; Real x(start = 0, fixed = true); equation der(x) = u; end Sum;";
+    let here = folder(&[("Sum.mo", text), ("u.csv", "time,u\n0,0\n1,1\n2,0\n")]);
+    let (code, out, errors) =
+        exporting(&here, &["export-fmu", "Sum.mo", "--model", "Sum", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let unit = ["simulate", "unit.fmu", "--allow-external", "--input", "u.csv", "--method"];
+    for (method, is_noted) in [("co-simulation", true), ("dassl", false)] {
+        let (code, _, errors) =
+            gapi(&here, &[&unit[..], &[method, "--output", "o.csv", "--stop-time", "2"]].concat());
+        assert_eq!(code, 0, "{errors}");
+        let all = columns(&here.path().join("o.csv"));
+        for (t, u) in column(&all, "time").iter().zip(column(&all, "u")) {
+            near(*u, 1.0 - (t - 1.0).abs(), 1e-9);
+        }
+        let note = "during a step the inputs `u` have their values at its beginning";
+        assert_eq!(errors.contains(note), is_noted, "{errors}");
+    }
+}
+
+/// What a unit is not made for is refused as it is for a model.
+#[test]
+fn values_outside_the_range_of_a_unit_are_refused() {
+    let text = "model Tank type Level = enumeration(low, high); \
+                parameter Real A(min = 0.01) = 1; parameter Level at = Level.low; \
+                Real x(start = 1, fixed = true); Real y; equation der(x) = -A*x; \
+                y = if at == Level.low then 1 else 2; end Tank;";
+    let here = folder(&[("Tank.mo", text)]);
+    let export = ["export-fmu", "Tank.mo", "--model", "Tank", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    let unit = ["simulate", "unit.fmu", "--allow-external", "--set"];
+    for (value, expected) in [
+        ("A=-1", "`A` of `unit.fmu` is -1, less than 0.01, outside the range"),
+        ("at=7", "`at` of `unit.fmu` cannot be 7"),
+    ] {
+        let (code, _, errors) = gapi(&here, &[&unit[..], &[value]].concat());
+        assert!(code == 1 && errors.contains(expected), "{errors}");
+    }
+    let model = ["simulate", "Tank.mo", "--model", "Tank", "--set", "at=7"];
+    let (code, _, errors) = gapi(&here, &model);
+    assert!(code == 1 && errors.contains("`at` cannot be 7"), "{errors}");
+    assert!(errors.contains("its values are low (1), high (2)"), "{errors}");
+    for value in ["A=0.01", "at=high"] {
+        let (code, _, errors) = gapi(&here, &[&unit[..], &[value]].concat());
+        assert_eq!(code, 0, "{errors}");
+    }
+}
+
+/// The number that stands alone in a line, the one of this number.
+fn number_after(text: &str, which: usize) -> f64 {
+    let mut numbers = text.lines().filter_map(|line| line.trim().parse::<f64>().ok());
+    numbers.nth(which).unwrap_or_else(|| panic!("no number in {text}"))
+}
+
+/// The estimates of a fit go into a unit and into a second fit by the file that the first has left.
+#[test]
+fn the_estimates_of_a_fit_are_given_away() {
+    if platform(3).is_none() {
+        return;
+    }
+    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-3 * (37.0 * t).sin());
+    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
+    let problem = "model = \"P.Decay\"\nfiles = [\"P.mo\"]\n[parameters]\n\
+                   k = { min = 0.1, max = 10 }\nlevel = { min = 0.1, max = 10 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\noutputs = { y = \"y\" }\n";
+    let data = format!("time,y\n{data}");
+    let here = folder(&[("P.mo", DECAY), ("p.toml", problem), ("d.csv", &data)]);
+    let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let set = fs::read_to_string(here.path().join("o/parameters.ssv")).expect("estimates");
+    let read = ParameterSet::read(&set).expect("a set");
+    let [k, level] = &read.parameters[..] else { panic!("{set}") };
+    assert_eq!((k.name.as_str(), k.unit.as_deref()), ("k", Some("1/s")));
+    let interval = k.estimate.and_then(|own| own.interval).expect("an interval");
+    assert!(interval[0] < 2.0 && 2.0 < interval[1], "{interval:?}");
+    let base = ["export-fmu", "P.mo", "--model", "P.Decay", "--set-file", "o/parameters.ssv"];
+    let (code, out, errors) = exporting(&here, &[&base[..], &["-o", "unit.fmu"]].concat());
+    assert_eq!(code, 0, "{out}{errors}");
+    assert_eq!(fs::read_to_string(here.path().join("unit.ssv")).expect("a copy"), set);
+    let all = simulated(&here, &["--tolerance", "1e-9"]);
+    let number = |own: &Parameter| match own.value {
+        ParameterValue::Number(value) => value,
+        _ => f64::NAN,
+    };
+    let (k, level) = (number(k), number(level));
+    let last = |all: &[(String, Vec<f64>)]| *column(all, "y").last().expect("a row");
+    near(last(&all), level * (-k).exp(), 1e-6);
+    let set_file = ["--set-file", "o/parameters.ssv"];
+    let model = ["simulate", "P.mo", "--model", "P.Decay", "--output", "m.csv"];
+    let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
+    assert_eq!(code, 0, "{out}{errors}");
+    near(last(&columns(&here.path().join("m.csv"))), level * (-k).exp(), 1e-6);
+
+    // A second fit of another parameter with the values of the first.
+    for model in ["P.Decay\"\nfiles = [\"P.mo\"]", "unit.fmu\""] {
+        let second = format!(
+            "model = \"{model}\n[parameters]\nx = {{ min = 0.1, max = 10, initial = true }}\n\
+             [[experiment]]\ndata = \"d.csv\"\nset = \"o/parameters.ssv\"\n\
+             outputs = {{ y = \"y\" }}\n"
+        );
+        fs::write(here.path().join("q.toml"), &second).expect("written");
+        let identify = ["identify", "q.toml", "--allow-external", "--out", "q"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join("q/result.json")).expect("a result");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), 1.0, 1e-3);
+    }
+    // The same values in another unit.
+    let per_hour = ParameterSet {
+        name: "hours".to_owned(),
+        parameters: vec![Parameter {
+            name: "k".to_owned(),
+            value: ParameterValue::Number(3600.0 * k),
+            unit: Some("1/h".to_owned()),
+            estimate: None,
+        }],
+    };
+    fs::write(here.path().join("hours.ssv"), per_hour.to_xml()).expect("written");
+    let second = |model: &str| {
+        format!(
+            "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\nlevel = {{ min = 0.1, max = 10 }}\n\
+             [[experiment]]\ndata = \"d.csv\"\nset = \"hours.ssv\"\noutputs = {{ y = \"y\" }}\n"
+        )
+    };
+    for model in ["P.Decay", "unit.fmu"] {
+        fs::write(here.path().join("h.toml"), second(model)).expect("written");
+        let identify = ["identify", "h.toml", "--allow-external", "--out", "h"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let sentence =
+            "`k` in `hours.ssv` is converted from 1/h to 1/s, times 0.000277777777777778";
+        let text = fs::read_to_string(here.path().join("h/result.json")).expect("a result");
+        assert!(text.contains(sentence), "{text}");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), level, 1e-4);
+    }
+    for model in [&["simulate", "P.mo", "--model", "P.Decay"][..], &["simulate", "unit.fmu"]] {
+        let rest = ["--output", "m.csv", "--allow-external", "--set-file", "hours.ssv"];
+        let (code, out, errors) = gapi(&here, &[model, &rest].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(errors.contains("is converted from 1/h to 1/s"), "{out}{errors}");
+    }
+    let wrong = set.replace("unit=\"1/s\"", "unit=\"K\"");
+    fs::write(here.path().join("o/parameters.ssv"), wrong).expect("written");
+    let (code, out, errors) =
+        gapi(&here, &["identify", "q.toml", "--allow-external", "--out", "r"]);
+    let said = "`k` in `o/parameters.ssv` is in K, which cannot be converted to 1/s";
+    assert!(code == 1 && errors.contains(said), "{out}{errors}");
+    let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
+    assert!(code == 1 && errors.contains(said), "{out}{errors}");
+}
+
+/// Compares the estimates of two fits, and their standard errors.
+fn agree(unit: &serde_json::Value, own: &serde_json::Value) {
+    for at in 0..2 {
+        for what in ["value", "deviation"] {
+            let of = |result: &serde_json::Value| {
+                let found = result["parameters"][at][what].as_f64();
+                found.unwrap_or_else(|| panic!("{what}: {result}"))
+            };
+            near(of(unit), of(own), 1e-5 * of(own).abs());
+        }
+    }
+}
+
+/// Derivatives by parameters and initial values are those that a unit of FMI 3.0 offers; they lead to the
+/// estimates and standard errors of the model. FMI 2.0 has none, and after an event nobody knows them.
+#[test]
+fn derivatives_of_a_unit_are_exact_where_it_offers_them() {
+    if platform(3).is_none() {
+        return;
+    }
+    let jumping = DECAY.replace("end Decay;", "end Decay; model Jump extends Decay; equation \
+                                 when sample(0.5, 10) then reinit(x, 0.5*pre(x)); end when; end Jump; \
+                                 model Begun parameter Real x0 = 1; extends Decay(x(start = 2*x0)); \
+                                 end Begun;");
+    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-2 * (37.0 * t).sin());
+    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
+    let here = folder(&[("P.mo", &jumping), ("d.csv", &format!("time,y\n{data}"))]);
+    let fitting = |model: &str, second: &str| {
+        let problem = format!(
+            "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\n\
+             k = {{ min = 0.1, max = 10 }}\n{second} }}\n\
+             [[experiment]]\ndata = \"d.csv\"\ntolerance = 1e-9\noutputs = {{ y = \"y\" }}\n"
+        );
+        fs::write(here.path().join("p.toml"), problem).expect("written");
+        let identify = ["identify", "p.toml", "--allow-external", "--out", "o", "--overwrite"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
+        serde_json::from_str::<serde_json::Value>(&text).expect("JSON")
+    };
+    let fitted = |model| fitting(model, "x = { min = 0.1, max = 10, initial = true");
+    let begun = |model| fitting(model, "x0 = { min = 0.1, max = 10");
+    let export = |model: &str, version: &str| {
+        let base = ["export-fmu", "P.mo", "--model", model, "--kind", "me", "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &[&base[..], &["--fmi", version]].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+    };
+    let says = |result: &serde_json::Value, words: &str| result.to_string().contains(words);
+    let own = fitted("P.Decay");
+    export("P.Decay", "3");
+    let unit = fitted("unit.fmu");
+    assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
+    agree(&unit, &own);
+    // Initial values that follow from a parameter.
+    export("P.Begun", "3");
+    let unit = begun("unit.fmu");
+    assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
+    agree(&unit, &begun("P.Begun"));
+    export("P.Decay", "2");
+    assert!(says(&fitted("unit.fmu"), "because FMUs of FMI 2.0 have no derivatives by parameters"));
+    export("P.Jump", "3");
+    assert!(says(&fitted("unit.fmu"), "because the FMU has"));
+}
+
+const MIXED: &str = "package P type Level = enumeration(low, mid, high); model Mixed \
+                     parameter Real T0 = 3; parameter String label = \"two words\" \"a name\"; \
+                     parameter String whole = label + \"!\"; input Level lv(start = Level.high); \
+                     input Real u[2](each start = T0); input Integer n(start = 2*3); \
+                     input Boolean on(start = not false); discrete Integer k(start = 4, fixed = true); \
+                     Real x[2](start = {1, 2}, each fixed = true); output Real y; equation \
+                     der(x) = -x; y = if on then u[1] + n else 0; when x[1] < 0.9*x[2] then k = pre(k) + n; end when; \
+                     end Mixed; end P;\n";
+
+/// Strings are constants; the start values of inputs, whatever expressions they are, and of arrays and
+/// discrete variables are those of the model. Nothing is in the results that the model does not have.
+#[test]
+fn strings_and_start_values_are_those_of_the_model() {
+    let here = folder(&[("P.mo", MIXED)]);
+    for version in ["2", "3"] {
+        let base = ["export-fmu", "P.mo", "--model", "P.Mixed", "--fmi", version, "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &[&base[..], &["--set", "T0=5"]].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(errors.contains("the unit has no `whole`"), "{errors}");
+        let bytes = fs::read(here.path().join("unit.fmu")).expect("a unit");
+        let archive = Archive::read(std::io::Cursor::new(bytes)).expect("an archive");
+        let text = archive.file("modelDescription.xml").expect("a description");
+        let description = description::read(&String::from_utf8_lossy(text)).expect("a description");
+        let start = |name: &str| {
+            let own = description.find(name).unwrap_or_else(|| panic!("no `{name}`"));
+            own.start.join(" ")
+        };
+        let names = ["label", "lv", "u[2]", "n", "on", "k", "x[2]"];
+        assert_eq!(names.map(start), ["two words", "3", "5.0", "6", "true", "4", "2.0"]);
+        let all = simulated(&here, &["--set", "x[1]=5", "--set", "k=1"]);
+        let last = |name: &str| *column(&all, name).last().expect("a row");
+        near(last("x[1]"), 5.0 * (-1.0f64).exp(), 1e-6);
+        near(last("x[2]"), 2.0 * (-1.0f64).exp(), 1e-6);
+        assert_eq!((last("y"), last("k")), (11.0, 1.0));
+        let inner = all.iter().map(|(name, _)| name.as_str());
+        let inner = inner.filter(|name| name.contains("der(u") || name.contains("indicator"));
+        assert_eq!(inner.collect::<Vec<_>>(), Vec::<&str>::new());
+    }
+}
+
+/// What was computed until a simulation failed is shown, written, and named in the message.
+#[test]
+fn results_until_a_failure_are_kept() {
+    let text = "model Limited Real x(start = 0, fixed = true); equation der(x) = 1; \
+                assert(x < 0.5, \"x too large\"); end Limited;";
+    let script =
+        "importFMU(\"unit.fmu\")\nsimulateModel(\"Limited_fmu\", stopTime=1, resultFile=\"a\")\n";
+    let here = folder(&[("Limited.mo", text), ("s.mos", script)]);
+    let export = ["export-fmu", "Limited.mo", "--model", "Limited", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    for method in ["dassl", "co-simulation"] {
+        let unit = ["simulate", "unit.fmu", "--allow-external", "--output", "r.csv", "--stats"];
+        let (code, out, errors) = gapi(&here, &[&unit[..], &["--method", method]].concat());
+        assert!(code == 1 && errors.contains("x too large"), "{method}: {out}{errors}");
+        assert!(out.contains("unit.fmu: 0 s to 0."), "{method}: {out}");
+        let all = columns(&here.path().join("r.csv"));
+        let (time, x) = (column(&all, "time"), column(&all, "x"));
+        assert!(time.len() > 100 && x.last() > Some(&0.49), "{} rows", time.len());
+        time.iter().zip(x).for_each(|(t, x)| near(*x, *t, 1e-6));
+    }
+    let (_, out, errors) = gapi(&here, &["run", "s.mos", "--allow-external", "--out", "o"]);
+    let text = format!("{out}{errors}");
+    assert!(text.contains("the results until t = 0.") && text.contains("are in `a.mat`"), "{text}");
+}
+
+/// A problem file is drafted for a unit, and runs.
+#[test]
+fn fits_of_units_are_drafted() {
+    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-3 * (37.0 * t).sin());
+    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
+    let here = folder(&[("P.mo", DECAY), ("d.csv", &format!("time [s],y\n{data}"))]);
+    let base = ["export-fmu", "P.mo", "--model", "P.Decay", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &base);
+    assert_eq!(code, 0, "{out}{errors}");
+    let (code, out, errors) = gapi(&here, &["new", "d.csv", "--model", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("d.toml")).expect("a draft");
+    for line in [
+        "model = \"unit.fmu\"          # the FMU",
+        "k = { min = 0.1, max = 10.0 }          # 1/s; one decade around the model's value 1",
+        "outputs.y = { column = \"y\" }",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    let identify = ["identify", "d.toml", "--allow-external", "--out", "o"];
+    let (code, out, errors) = gapi(&here, &identify);
+    assert_eq!(code, 0, "{out}{errors}");
+}
+
+/// Where a text is expected a unit is refused with what takes it.
+#[test]
+fn units_are_not_read_as_texts() {
+    let here = folder(&[("x.fmu", "PK"), ("s.mos", "openModel(\"x.fmu\")\n")]);
+    for arguments in [
+        &["run", "x.fmu"][..],
+        &["run", "s.mos"],
+        &["flatten", "x.fmu"],
+        &["export-fmu", "x.fmu"],
+        &["simulate", "x.fmu", "s.mo"],
+        &["identify", "x.fmu"],
+    ] {
+        let (code, out, errors) = gapi(&here, arguments);
+        let text = format!("{out}{errors}");
+        assert!(text.contains("`x.fmu` is an FMU, not a"), "{arguments:?}: {text}");
+        assert!(text.contains("gapi simulate x.fmu") && !text.contains("UTF-8"), "{text}");
+        assert!(code == 1 || arguments.contains(&"s.mos"), "{arguments:?}: {code}");
+    }
+}
