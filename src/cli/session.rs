@@ -104,7 +104,7 @@ pub(super) fn world(global: &Global) -> Result<SystemWorld, ExitCode> {
     })
 }
 
-fn with_files_in(
+pub(super) fn with_files_in(
     world: SystemWorld,
     global: &Global,
     files: &[PathBuf],

@@ -141,34 +141,36 @@ const REDRAWN: Duration = Duration::from_millis(100);
 
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
-    let done = match imported::unit_of(&arguments.files) {
-        Some(path) => limits::enforce(&arguments.limits)
-            .map(|_watch| imported::simulate(path, arguments, global)),
-        None => simulate_model(arguments, global),
-    };
-    done.unwrap_or_else(|code| code)
+    simulate_until_stopped(arguments, global).unwrap_or_else(|code| code)
 }
 
 /// One that is stopped, by the user or by a limit, shows and writes what it has.
-fn simulate_model(arguments: &SimulateArgs, global: &Global) -> Result<ExitCode, ExitCode> {
+fn simulate_until_stopped(arguments: &SimulateArgs, global: &Global) -> Result<ExitCode, ExitCode> {
     let started = Instant::now();
     let world = session::world(global)?;
     world.catch_interrupts();
     let _watch = limits::watch(&arguments.limits, started, world.stopping())?;
     let _unheard = limits::end_unheard(world.stopping());
-    let (mut session, class) =
-        session::with_class(world, global, arguments.model.as_ref(), &arguments.files)?;
+    let unit = imported::unit_of(&arguments.files);
+    let (mut session, class) = match unit {
+        Some(_) => (session::with_files_in(world, global, &[])?.0, String::new()),
+        None => session::with_class(world, global, arguments.model.as_ref(), &arguments.files)?,
+    };
     for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
         session.world.grant(Grant::Named(file));
     }
     let read = [&arguments.from, &arguments.input, &arguments.set_file];
-    for file in read.into_iter().flatten() {
+    for file in read.into_iter().flatten().map(PathBuf::as_path).chain(unit) {
         session.world.grant(Grant::Read(file));
     }
     if session::lists_permissions(&mut session, global) {
         return Ok(ExitCode::SUCCESS);
     }
-    Ok(match run(&mut session, &class, arguments, global) {
+    let done = match unit {
+        Some(path) => imported::run(&mut session, path, arguments, global),
+        None => run(&mut session, &class, arguments, global),
+    };
+    Ok(match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) if session.is_interrupted() => session::stopped(&mut session),
         Err(errors) => session::failed(&mut session, errors),

@@ -6,16 +6,14 @@ use crate::fault;
 use crate::options::Global;
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
-use crate::script::access::policy::Grant;
 use crate::script::models::imported::{self, Given};
 use crate::script::models::parameter_sets;
 use crate::script::models::simulation::{self, SimulationOptions};
 use crate::script::runs::problem;
 use crate::source::Span;
-use crate::{plot, results, session};
+use crate::{plot, results};
 use gapilib_fmi::archive::is_unit;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// The unit among the files, if it is the only one.
 pub(super) fn unit_of(files: &[PathBuf]) -> Option<&Path> {
@@ -26,29 +24,7 @@ pub(super) fn unit_of(files: &[PathBuf]) -> Option<&Path> {
 }
 
 /// Simulates and writes the trajectories, or shows the last values.
-pub(super) fn simulate(path: &Path, arguments: &SimulateArgs, global: &Global) -> ExitCode {
-    let mut session = match session::with_files(global, &[]) {
-        Ok((session, _)) => session,
-        Err(code) => return code,
-    };
-    for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
-        session.world.grant(Grant::Named(file));
-    }
-    session.world.grant(Grant::Read(path));
-    for file in [&arguments.input, &arguments.set_file].into_iter().flatten() {
-        session.world.grant(Grant::Read(file));
-    }
-    if session::lists_permissions(&mut session, global) {
-        return ExitCode::SUCCESS;
-    }
-    match run(&mut session, path, arguments, global) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(_) if session.is_interrupted() => session::stopped(&mut session),
-        Err(errors) => session::failed(&mut session, errors),
-    }
-}
-
-fn run(
+pub(super) fn run(
     session: &mut Session,
     path: &Path,
     arguments: &SimulateArgs,
