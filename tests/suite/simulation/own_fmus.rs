@@ -382,6 +382,29 @@ fn results_until_a_failure_are_kept() {
     assert!(text.contains("the results until t = 0.") && text.contains("are in `a.mat`"), "{text}");
 }
 
+/// A limit of time ends a simulation of a unit as it ends one of a model: what was computed is kept.
+#[test]
+fn a_limit_of_time_keeps_what_was_computed() {
+    let text = "model Long Real x(start = 1, fixed = true); Real v(start = 0, fixed = true); equation \
+                der(x) = v; der(v) = -1e6*x; annotation(experiment(StopTime = 1e5)); end Long;";
+    let here = folder(&[("Long.mo", text)]);
+    let export = ["export-fmu", "Long.mo", "--model", "Long", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    let limits = ["--time-limit", "6", "--interval", "0.01"];
+    for method in ["dassl", "co-simulation"] {
+        let unit = ["simulate", "unit.fmu", "--allow-external", "--output", "r.csv"];
+        let (code, out, errors) =
+            gapi(&here, &[&unit[..], &limits, &["--method", method]].concat());
+        let said = errors.contains("time limit") && out.contains("trajectories: r.csv");
+        assert!(code != 0 && said, "{method}: {code} {out}{errors}");
+        let all = columns(&here.path().join("r.csv"));
+        let (time, x) = (column(&all, "time"), column(&all, "x"));
+        assert_eq!((time[0], x[0], x.len()), (0.0, 1.0, time.len()));
+        fs::remove_file(here.path().join("r.csv")).expect("results");
+    }
+}
+
 /// A problem file is drafted for a unit, and runs.
 #[test]
 fn fits_of_units_are_drafted() {
