@@ -6,13 +6,14 @@ use super::options::{Global, Limits};
 use super::{limits, session, terminal};
 use crate::diag::{Diagnostic, Fault, Severity};
 use crate::name::{Ident, Name};
+use crate::packages;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::language::parsing::{self, Reading};
+use crate::script::language::script_checks;
 use crate::script::models::{checking, simulation};
 use crate::source::Span;
 use crate::syntax::errors::NOT_A_SCRIPT;
-use crate::{lsp, packages};
 use clap::{Args, ValueHint};
 use gapilib_fmi::archive::is_unit;
 use std::path::{Path, PathBuf};
@@ -26,7 +27,9 @@ Examples:
   gapi check models --model CaseStudies.PolarizationCurve
   gapi check scripts/GAPILib.mos
   gapi check Pump.fmu
-  gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller")]
+  gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller
+
+Exit code: 0 if nothing is wrong, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct CheckArgs {
     /// Modelica files, package folders, scripts or functional mock-up units (FMUs), or the class
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
@@ -49,10 +52,12 @@ pub(super) struct CheckArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  gapi flatten models --model CaseStudies.PolarizationCurve")]
+  gapi flatten models --model CaseStudies.PolarizationCurve
+
+Exit code: 0 on success, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct FlattenArgs {
-    /// Modelica files or package folders, and the class; files that are found by name can be
-    /// omitted
+    /// Modelica files or package folders, and the class; files that can be found by class name can
+    /// be omitted
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to flatten
@@ -123,7 +128,7 @@ fn check_script(session: &mut Session, path: &Path) -> bool {
     };
     let (script, found) = match parsing::read(&mut session.sources, &name, &bytes) {
         Reading::Script(script) => {
-            let found = lsp::check_script(session, &script, path.parent());
+            let found = script_checks::check_script(session, &script, path.parent());
             (Some(script), found)
         }
         Reading::Rejected(error) => (None, vec![error]),

@@ -6,12 +6,12 @@ use super::document::Document;
 use super::lines::Lines;
 use super::occurrences::{self, Occurrence};
 use super::parsed::{Parsed, file_of};
-use super::recovery::{self, Read};
-use super::script_checks;
+use super::recovery::{self, Read, Tree};
 use super::uri;
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::packages;
+use crate::script::language::script_checks::check_script;
 use crate::script::models::documents::{CheckedModel, ModelCheck};
 use crate::script::{Session, builtins};
 use crate::source::{SourceId, Span};
@@ -220,6 +220,17 @@ impl Workspace {
         parsed.names.iter().all(is_own)
     }
 
+    /// What is wrong with the calls of a script.
+    fn check_script(&mut self, parsed: &Parsed) -> Vec<Diagnostic> {
+        let Some(Tree::Script(script)) = &parsed.tree else { return Vec::new() };
+        let path = parsed.document.path.as_ref();
+        // The user has opened this file, but not those that it names.
+        if let Some(path) = path {
+            self.session.grant_input(path);
+        }
+        check_script(&mut self.session, script, path.and_then(|path| path.parent()))
+    }
+
     /// Begins to look for what is wrong with a document: with its text and the names in it.
     pub(crate) fn examine(&mut self, document: &Arc<Document>, all: &Documents) -> Examination {
         let parsed = self.open(document, all);
@@ -227,7 +238,7 @@ impl Workspace {
         found.retain(|error| error.code != NOT_A_SCRIPT);
         let mut models = VecDeque::new();
         if parsed.errors.is_empty() {
-            found.extend(script_checks::check(&mut self.session, &parsed));
+            found.extend(self.check_script(&parsed));
             for (name, class) in parsed.all_classes() {
                 found.extend(self.session.examine_class(&name));
                 let is_model = matches!(class.restriction, Restriction::Model | Restriction::Block);

@@ -14,6 +14,7 @@ pub mod messages;
 pub mod output;
 pub(crate) mod parsed_scripts;
 pub mod parsing;
+pub mod script_checks;
 mod scripts;
 mod statements;
 pub(crate) mod statuses;

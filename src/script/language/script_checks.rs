@@ -1,43 +1,30 @@
 //! What is wrong with a script before it runs: functions that nothing defines, and named arguments that
 //! commands do not have. Scripts that it runs and models that it opens are read, never executed.
 
-use super::parsed::{Parsed, classes_of};
-use super::recovery::{self, Tree};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::Library;
 use crate::functions;
 use crate::functions::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
 use crate::name::Ident;
-use crate::script::{Session, builtins};
 use crate::source::SourceId;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, InteractiveKind, Script, Statement,
     StatementKind,
 };
 use crate::syntax::visit::{Visit, walk_expression, walk_statement};
+use crate::{Session, builtins};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Scripts that are read for one document, at most.
+/// Scripts that are read for one script, at most.
 const MOST_SCRIPTS: usize = 50;
 
 /// Names that have a meaning in the arguments of some commands alone: `plotExpression(apply(…))`.
 const SPECIAL: &[&str] = &["apply"];
 
-/// What is wrong with the calls of a script.
-pub fn check(session: &mut Session, parsed: &Parsed) -> Vec<Diagnostic> {
-    let Some(Tree::Script(script)) = &parsed.tree else { return Vec::new() };
-    let path = parsed.document.path.as_ref();
-    // The user has opened this file, but not those that it names.
-    if let Some(path) = path {
-        session.grant_input(path);
-    }
-    check_script(session, script, path.and_then(|path| path.parent()))
-}
-
 /// What is wrong with the calls of a script that lies in a folder.
-pub(crate) fn check_script(
+pub fn check_script(
     session: &mut Session,
     script: &Script,
     folder: Option<&Path>,
@@ -114,14 +101,10 @@ impl Known {
         }
         let bytes = session.world.read(&path).unwrap_or_default();
         let text = crate::syntax::decode(&bytes).0;
-        match recovery::read(SourceId::NONE, &text, true).tree {
-            Some(tree) => {
-                self.names.extend(classes_of(&tree).iter().map(|class| class.name.node));
-                if let Tree::Script(script) = &tree {
-                    self.add_script(session, script, path.parent());
-                }
-            }
-            None => self.is_open = true,
+        match crate::syntax::parse_script(SourceId::NONE, &text) {
+            Ok(script) => self.add_script(session, &script, path.parent()),
+            // What is wrong with it is shown where it is open.
+            Err(_) => self.is_open = true,
         }
     }
 
