@@ -212,7 +212,7 @@ impl Evaluator<'_> {
         let is_variable =
             name.is_simple() && name.first().is_some_and(|first| self.scope.contains(first));
         let subscripts = is_variable.then(|| {
-            format!("`{called}` is a variable; subscripts are in brackets: `{called}[1]`")
+            format!("`{called}` is a variable: write a product as `{called}*(...)`, a subscript as `{called}[1]`")
         });
         let mut known = self.host.function_names();
         known.extend(functions::names().map(str::to_owned));

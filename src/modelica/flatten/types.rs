@@ -42,9 +42,17 @@ impl Types<'_> {
         let expected = if each { 0 } else { variable.dims.len() };
         match self.rank_of(e) {
             Some(found) if found != expected => {
-                let help = "give an array, such as `fill(value, n)`; in a modifier, `each` repeats \
-                            a value";
-                let help = (found == 0).then_some(help);
+                let help = match (expected, found) {
+                    (_, 0) => Some(
+                        "give an array, such as `fill(value, n)`; in a modifier, `each` repeats a \
+                         value",
+                    ),
+                    (1, 2) => Some(
+                        "`[...]` makes a matrix, `{...}` a vector; `cat(1, a, b)` puts vectors one \
+                         after the other",
+                    ),
+                    _ => None,
+                };
                 return Err(fault!(
                     SIZE_MISMATCH,
                     "`{name}` has {expected} dimensions, but its value has {found}"

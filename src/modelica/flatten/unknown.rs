@@ -27,7 +27,7 @@ pub(crate) fn function(
     let written = name.to_string();
     let is_component = name.is_simple() && name.first().is_some_and(|first| known.contains(&first));
     let subscripts = is_component
-        .then(|| format!("`{written}` is a variable; subscripts are in brackets: `{written}[1]`"));
+        .then(|| format!("`{written}` is a variable: write a product as `{written}*(...)`, a subscript as `{written}[1]`"));
     let help = subscripts
         .or_else(|| foreign::function_help(&written))
         .or(suggestion)

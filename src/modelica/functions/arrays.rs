@@ -6,6 +6,7 @@ use super::rules::{Known, TypeRule};
 use crate::bail;
 use crate::diag::Fault;
 use crate::symbolic::function::UnitRule;
+use crate::value::construct::do_not_fit;
 use crate::value::errors::{DOMAIN_ERROR, SIZE_MISMATCH};
 use crate::value::{element_count, sizes};
 
@@ -238,13 +239,7 @@ pub(crate) fn concatenation(axis: usize, parts: &[&[usize]]) -> Result<Plan, Fau
         let fits =
             part.len() == dims.len() && (0..dims.len()).all(|d| d == axis || part[d] == dims[d]);
         if !fits {
-            bail!(
-                SIZE_MISMATCH,
-                "cannot concatenate arrays with the sizes {} and {} along dimension {}",
-                sizes(first),
-                sizes(part),
-                axis + 1
-            );
+            return Err(do_not_fit([first, part], axis));
         }
         begins.push(dims[axis]);
         dims[axis] += part[axis];

@@ -30,6 +30,7 @@ impl Surroundings<'_> {
             .or_else(|| self.late_value())
             .or_else(|| self.unit_or_product())
             .or_else(|| self.missing_section())
+            .or_else(|| self.returned_value())
     }
 
     /// `**`, `+=`
@@ -116,6 +117,18 @@ impl Surroundings<'_> {
         })
     }
 
+    /// `return x`
+    fn returned_value(&self) -> Option<Remedy> {
+        let (_, word) = split_word(self.head);
+        let is_value = word == "return" && !self.gap.contains(['\n', '\u{1e}']);
+        is_value.then(|| Remedy {
+            message: "`return` takes no value".to_owned(),
+            help: "assign the value to an output of the function, `y := ...;`: what the outputs \
+                   have at the end is returned"
+                .to_owned(),
+        })
+    }
+
     /// An equation among the declarations.
     fn missing_section(&self) -> Option<Remedy> {
         let begins = ["der", "if", "for", "when", "assert", "reinit"].contains(&self.found);
@@ -155,6 +168,8 @@ const NAMES: &[(&str, &str)] = &[
     ("pi", "Modelica.Constants.pi"),
     ("PI", "Modelica.Constants.pi"),
     ("t", "time"),
+    ("inf", "Modelica.Constants.inf"),
+    ("Inf", "Modelica.Constants.inf"),
 ];
 
 /// Types of other languages.

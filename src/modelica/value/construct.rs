@@ -117,6 +117,23 @@ pub(crate) fn promote(value: Value, rank: usize) -> Result<Value, Fault> {
     Ok(Value::Array(ArrayValue::new(dims, elements)))
 }
 
+/// That these sizes do not fit together along dimension `axis`, from 0.
+pub(crate) fn do_not_fit([first, other]: [&[usize]; 2], axis: usize) -> Fault {
+    let dimension = axis + 1;
+    let are_columns =
+        axis == 1 && [first, other].iter().all(|dims| dims.len() == 2 && dims[1] == 1);
+    let help = are_columns.then(|| {
+        "vectors are columns in `[a, b]`; `cat(1, a, b)` puts one after the other".to_owned()
+    });
+    fault!(
+        SIZE_MISMATCH,
+        "cannot concatenate arrays with the sizes {} and {} along dimension {dimension}",
+        sizes(first),
+        sizes(other)
+    )
+    .help_if(help)
+}
+
 /// `cat(k, A, B, …)` (MLS §10.4.2): `dimension` counted from 1; the other sizes agree.
 pub fn cat(dimension: usize, values: Vec<Value>) -> Result<Value, Fault> {
     let mut arrays = Vec::with_capacity(values.len());
@@ -137,12 +154,7 @@ pub fn cat(dimension: usize, values: Vec<Value>) -> Result<Value, Fault> {
         let fits = array.rank() == dims.len()
             && (0..dims.len()).all(|d| d == axis || array.dims[d] == dims[d]);
         if !fits {
-            bail!(
-                SIZE_MISMATCH,
-                "cannot concatenate arrays with the sizes {} and {} along dimension {dimension}",
-                sizes(&first.dims),
-                sizes(&array.dims)
-            );
+            return Err(do_not_fit([&first.dims[..], &array.dims[..]], axis));
         }
         dims[axis] += array.dims[axis];
     }

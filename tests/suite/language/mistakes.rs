@@ -103,6 +103,17 @@ fn names_of_other_languages_are_answered_with_those_of_modelica() {
     model("Real x = 2*t;", &["write `time`"]);
     model("Real x = pow(time, 2);", &["write `x^y`"]);
     model("Real x[2] = {1, 2};\nReal y = x(1);", &["`x` is a variable", "`x[1]`"]);
+    model("Real x = time;\nReal y = x(x - 1);", &["`x*(...)`"]);
+    model("Real x = inf;", &["write `Modelica.Constants.inf`"]);
+    model("Real x[2] = [1, 2];", &["`{...}` a vector"]);
+    let here = folder(&[("s.mos", "a := {1, 2, 3};\nb := [a[1:1], a];\n")]);
+    let (code, _, errors) = gapi(&here, &["run", "s.mos"]);
+    assert!(code != 0 && errors.contains("`cat(1, a, b)` puts one after the other"), "{errors}");
+    model(
+        "function f\n  input Real u;\n  output Real y;\nalgorithm\n  return 2*u;\nend f;\n\
+         Real x = f(time);",
+        &["`return` takes no value", "`y := ...;`"],
+    );
     let source = "Modelica.Electrical.Analog.Sources.ConstantVoltage v(V = 1);\n\
                   Modelica.Electrical.Analog.Basic.Ground g;\nequation\n  connect(v, g.p);";
     model(source, &["`v` is not a connector", "`v.p`, `v.n`"]);
