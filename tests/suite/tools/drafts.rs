@@ -63,6 +63,23 @@ fn a_building_has_dates_decimal_commas_and_two_temperatures() {
     assert!(initial.contains("around the first measured value"), "{initial}");
 }
 
+/// A line of means below the numbers makes a text of the column of times: another quantity does not take
+/// its place.
+#[test]
+fn what_cannot_be_times_is_not_taken_for_them() {
+    let tank = "model M\n  parameter Real k = 0.1;\n  output Real h(unit = \"m\", start = 1, fixed = true);\n\
+                equation\n  der(h) = -k*h;\nend M;\n";
+    let rows = rows(8, |k| format!("{k};{};{}", 1000.0 + k, 100.0 - 5.0 * k));
+    let table = format!("Zeit [s];Druck [mbar];h [cm]\n{rows}Mittelwert;;80\n");
+    let here = folder(&[("d.csv", &table), ("M.mo", tank)]);
+    let (code, out, errors) = gapi(&here, &["new", "d.csv", "--model", "M.mo"]);
+    let text = std::fs::read_to_string(here.path().join("d.toml")).unwrap_or_default();
+    assert!(code == 0 && out.contains("it cannot run yet"), "{out}{errors}");
+    assert!(text.contains("# x = { variable = \"time\"") && !text.contains("\nx = "), "{text}");
+    assert!(text.contains("`Mittelwert` in `Zeit [s]` is not a number"), "{text}");
+    assert!(text.contains("# not used: column \"Druck\""), "{text}");
+}
+
 #[test]
 fn a_unit_or_the_beginning_of_a_name_decides() {
     let tank = "model M\n  parameter Real k(min = 0.001, max = 1) = 0.1;\n\

@@ -39,8 +39,8 @@ pub struct Question {
 
 /// Which columns mean what.
 struct Roles<'c> {
-    /// The variable and its column.
-    x: (String, &'c DataColumn),
+    /// The variable and its column; none where no column can be that of the times.
+    x: (String, Option<&'c DataColumn>),
     outputs: Vec<Assigned<'c>>,
     inputs: Vec<Assigned<'c>>,
     unused: Vec<&'c DataColumn>,
@@ -68,6 +68,9 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
     let mut text = head(options, &subject);
     parameters(&mut text, &subject, &roles);
     experiment(&mut text, options, &subject.flat, &roles);
+    for (_, why) in table.unreadable() {
+        _ = writeln!(text, "# not used: {}", why.message);
+    }
     text.push_str(
         "\n[stop]                       # the first condition met ends the run\n\
          evaluations = 20000          # simulations\n\
@@ -133,17 +136,19 @@ fn roles<'c>(
     };
     let first = || (&columns[0], &meanings[0]);
     let x = match (time, pairs().find(is_driver)) {
-        (Some((time, _)), _) => ("time".to_owned(), time),
-        (None, Some((column, Some(driver)))) => (driver.variable.clone(), column),
+        (Some((time, _)), _) => ("time".to_owned(), Some(time)),
+        (None, Some((column, Some(driver)))) => (driver.variable.clone(), Some(column)),
         (None, _) => match first() {
             (column, Some(own)) if !(own.is_guess && column.increases()) => {
-                (own.variable.clone(), column)
+                (own.variable.clone(), Some(column))
             }
-            (column, _) => ("time".to_owned(), column),
+            (column, _) => ("time".to_owned(), Some(column).filter(|own| own.may_be_times())),
         },
     };
     let mut roles = Roles { x, outputs: Vec::new(), inputs: Vec::new(), unused: Vec::new() };
-    for (column, meaning) in pairs().filter(|(column, _)| column.name != roles.x.1.name) {
+    let is_x = |column: &DataColumn| roles.x.1.is_some_and(|x| x.name == column.name);
+    let others: Vec<_> = pairs().filter(|(column, _)| !is_x(column)).collect();
+    for (column, meaning) in others {
         let Some(Meaning { variable, is_input, is_guess }) = meaning.clone() else {
             roles.unused.push(column);
             continue;
@@ -368,9 +373,17 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
         "\n# One table `[[experiment]]` per measurement.\n[[experiment]]\nname = \"measured\"\ndata = {}\n",
         quoted(&options.data)
     );
-    let (x_name, x) = &roles.x;
-    let entry = format!("x = {{ variable = {}, column = {} }}", quoted(x_name), quoted(&x.name));
-    _ = writeln!(text, "{entry}          # {}{}", span(x), conversion(x, x_name, flat));
+    match &roles.x {
+        (variable, Some(x)) => {
+            let [name, column] = [variable, &x.name].map(|own| quoted(own));
+            let about = format!("{}{}", span(x), conversion(x, variable, flat));
+            _ = writeln!(text, "x = {{ variable = {name}, column = {column} }}          # {about}");
+        }
+        (_, None) => text.push_str(
+            "# No column of times was found: write which one it is.\n\
+             # x = { variable = \"time\", column = \"time\" }\n",
+        ),
+    }
     if roles.outputs.is_empty() {
         text.push_str("# No column fits a variable: write which column contains which variable.\n# outputs.y = { column = \"y\" }\n");
     } else {
@@ -387,7 +400,7 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
         );
     }
     columns_of(text, "inputs", &roles.inputs, flat);
-    for column in roles.unused.iter().filter(|_| !roles.outputs.is_empty()) {
+    for column in &roles.unused {
         _ = writeln!(text, "# not used: column {}, {}", quoted(&column.name), span(column));
     }
 }

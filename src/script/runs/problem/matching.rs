@@ -114,6 +114,12 @@ impl DataColumn {
             || unit.is_some_and(|unit| unit.to(Unit::SECOND).is_some())
     }
 
+    /// Whether its unit, where it has one, is one of times.
+    pub(super) fn may_be_times(&self) -> bool {
+        let unit = self.unit.as_deref().and_then(written);
+        unit.is_none_or(|unit| unit.to(Unit::SECOND).is_some())
+    }
+
     /// Whether its values increase from row to row.
     pub(super) fn increases(&self) -> bool {
         let known: Vec<f64> = self.known().collect();
