@@ -112,6 +112,20 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
+    fn every_command_has_examples_and_says_its_exit_codes() {
+        for command in Cli::command().get_subcommands().filter(|own| !own.is_hide_set()) {
+            let name = command.get_name();
+            let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            assert!(after.contains(&format!("\n  gapi {name}")), "{name}: {after}");
+            assert!(after.contains("\nExit code: 0 "), "{name}: {after}");
+            assert!(command.get_about().is_some(), "{name}");
+            for argument in command.get_arguments() {
+                assert!(argument.get_help().is_some(), "{name}: {argument}");
+            }
+        }
+    }
+
+    #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
     }

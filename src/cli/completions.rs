@@ -7,8 +7,13 @@ use std::process::ExitCode;
 /// Arguments of `gapi completions`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Example:
-  gapi completions bash > ~/.local/share/bash-completion/completions/gapi")]
+Examples:
+  gapi completions bash > ~/.local/share/bash-completion/completions/gapi
+  gapi completions zsh > ~/.zfunc/_gapi        a folder of fpath
+  gapi completions fish > ~/.config/fish/completions/gapi.fish
+  gapi completions powershell >> $PROFILE
+
+Exit code: 0 on success, 2 for an unknown shell.")]
 pub(super) struct CompletionsArgs {
     /// The shell
     pub shell: clap_complete::Shell,

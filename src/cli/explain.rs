@@ -11,7 +11,9 @@ use std::process::ExitCode;
 #[command(after_help = "\
 Examples:
   gapi explain unknown-class
-  gapi explain")]
+  gapi explain
+
+Exit code: 0 on success, 2 for an unknown code.")]
 pub(super) struct ExplainArgs {
     /// The code in brackets after `error`; if omitted, all codes are listed
     pub code: Option<String>,

@@ -24,7 +24,9 @@ Examples:
   gapi export-fmu Decay.mo --model Decay --set k=2.31
   gapi export-fmu Decay.mo --model Decay --set-file results/parameters.ssv     with the values of a fit
 
-The unit runs on the platform of this program and needs neither it nor a C compiler.")]
+The unit runs on the platform of this program and needs neither it nor a C compiler.
+
+Exit code: 0 on success, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct ExportFmuArgs {
     /// Modelica files or package folders, and the class; files that can be found by
     /// class name can be omitted

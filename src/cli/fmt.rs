@@ -19,7 +19,10 @@ Examples:
   gapi fmt models scripts          format all .mo and .mos files in two folders
   gapi fmt --check .               exit code 1 if a file is not formatted
   gapi fmt --diff Cell.mo          show what would change
-  gapi fmt - --stdin-name a.mos    from standard input to standard output")]
+  gapi fmt - --stdin-name a.mos    from standard input to standard output
+
+Exit code: 0 on success; 1 on an error, or with --check if a file is not formatted; 2 for an invalid
+command line.")]
 pub(super) struct FmtArgs {
     /// Modelica files, scripts, folders with them, or `-` for standard input
     #[arg(required = true, value_name = "FILE|FOLDER", value_hint = ValueHint::AnyPath)]

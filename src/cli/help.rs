@@ -14,7 +14,9 @@ use std::process::ExitCode;
 Examples:
   gapi help simulateModel
   gapi help --compat
-  gapi help --compat dymola")]
+  gapi help --compat dymola
+
+Exit code: 0 on success, 1 for an unknown script command, 2 for an invalid command line.")]
 pub(super) struct HelpArgs {
     /// A script command; if omitted, all commands are listed
     pub name: Option<String>,

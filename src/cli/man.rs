@@ -11,7 +11,9 @@ use std::process::ExitCode;
 #[command(after_help = "\
 Examples:
   gapi man | man -l -
-  gapi man --out ~/.local/share/man/man1")]
+  gapi man --out ~/.local/share/man/man1
+
+Exit code: 0 on success, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct ManArgs {
     /// Write the pages of all commands to this folder; without it, the one of `gapi` is printed
     #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]

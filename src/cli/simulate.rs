@@ -44,7 +44,9 @@ Examples:
   gapi simulate Decay.mo --model Decay --dump eliminate_aliases
   gapi simulate Pump.fmu --allow-external=Pump.fmu --set k=2 --output pump.csv
 
-Defaults come from the model's experiment annotation.")]
+Defaults come from the model's experiment annotation.
+
+Exit code: 0 on success, 1 on an error, 2 for an invalid command line, 130 if interrupted.")]
 pub(super) struct SimulateArgs {
     /// Modelica files or package folders, and the class; files that can be found by
     /// class name can be omitted. Or a functional mock-up unit (FMU)

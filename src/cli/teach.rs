@@ -34,7 +34,9 @@ Examples:
   gapi teach lessons/04_selection.mos --quiz
   gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0.5\" --generation 10
   gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0\" --what-if \"F_Mut := 1\" --runs 20
-  gapi run my.mos --trace my.trace && gapi teach my.trace")]
+  gapi run my.mos --trace my.trace && gapi teach my.trace
+
+Exit code: 0 on success, 1 on an error, 2 for an invalid command line, 130 if interrupted.")]
 pub(super) struct TeachArgs {
     /// Print the steps as text, even on a terminal
     #[arg(long)]

@@ -40,8 +40,13 @@ use worker::{Worker, cancelled};
 /// Arguments of `gapi lsp`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
+Example:
+  gapi lsp --library ~/libraries
+
 Editors start it; `editors/` in the repository has their settings.
-Libraries are found in the folders of --library and MODELICAPATH.")]
+Libraries are found in the folders of --library and MODELICAPATH.
+
+Exit code: 0 if the editor has ended it, 1 if the connection broke off.")]
 pub(super) struct LspArgs {
     /// Accepted because some editors pass it: standard input and output are always used
     #[arg(long, hide = true)]
