@@ -1,9 +1,9 @@
 within CaseStudies;
 model PolarizationCurve "Polarization curve of a fuel cell, by a slow ramp of the current"
-  parameter Units.Voltage A(min = 1e-4, max = 1) = 0.0390 "Tafel slope";
+  parameter Units.Voltage A(min = 1e-4, max = 1) = 0.0390 "Tafel parameter RT/(alpha F)";
   parameter Units.CurrentDensity In(min = 0, max = 1) = 1.4e-3 "inner current density";
   parameter Units.CurrentDensity Io(min = 1e-15, max = 1) = 1.5856e-6 "exchange current density";
-  parameter Units.Voltage B(min = 0, max = 1) = 0.0918 "mass transfer slope";
+  parameter Units.Voltage B(min = 0, max = 1) = 0.0918 "mass-transport coefficient";
   parameter Units.AreaResistance R(min = 0, max = 10) = 7.2860e-4 "inner area specific resistance";
   parameter Units.CurrentDensity Ilim(min = 1e-3, max = 10) = 0.2265 "limiting transport current density";
   parameter Units.Voltage Eoc = 1.2 "open circuit voltage, reversible" annotation(Evaluate = true);

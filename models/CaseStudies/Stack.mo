@@ -6,7 +6,7 @@ model Stack "Polarization curve of a stack after Amphlett and Mann, by a slow ra
   parameter Real xi4(final unit = "V/K") = -1.5e-4 "activation loss: times T and the logarithm of the current";
   parameter Real lambda(final unit = "1", min = 1) = 15 "water of the membrane";
   parameter Real Rc(final unit = "Ohm", min = 0) = 3e-4 "resistance of contacts";
-  parameter Units.Voltage B(min = 0) = 0.03 "mass transfer slope";
+  parameter Units.Voltage B(min = 0) = 0.03 "mass-transport coefficient";
   parameter Integer N = 32 "cells" annotation(Evaluate = true);
   parameter Real A(final unit = "cm2") = 64 "area of a cell" annotation(Evaluate = true);
   parameter Real l(final unit = "cm") = 0.0178 "thickness of the membrane" annotation(Evaluate = true);
