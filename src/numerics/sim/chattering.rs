@@ -12,6 +12,9 @@
 //!                                       where its events change nothing it is followed instead
 //! ```
 //!
+//! Where both sides are the same but for rounding, a function may be larger than its uncertainty at every
+//! switch: a rush of events counts as a row, too.
+//!
 //! An event ends a slide that it has displaced (`displacement`). Following is exact up to the
 //! tolerance: a function that is larger than its uncertainty has events as every other one.
 
@@ -125,7 +128,8 @@ impl Run<'_> {
             return Ok(true);
         }
         let (rows, switched) = (&self.watch.rows, &self.crossings.switched);
-        if !switched.iter().any(|at| rows[*at].is_due()) {
+        let is_rush = self.has_rush_of_events();
+        if !is_rush && !switched.iter().any(|at| rows[*at].is_due()) {
             return Ok(false);
         }
         let system = &self.problem.system;
@@ -133,7 +137,8 @@ impl Run<'_> {
         if switched.iter().any(is_endless) {
             return Err(SimErrorKind::Chattering);
         }
-        let is_chattering = |at: &usize| rows[*at].length + 1 >= ROW && system.can_follow_now(*at);
+        let is_row = |at: &usize| rows[*at].length + 1 >= ROW || is_rush && switched.contains(at);
+        let is_chattering = |at: &usize| is_row(at) && system.can_follow_now(*at);
         let chattering: Vec<usize> = (0..rows.len()).filter(is_chattering).collect();
         if chattering.is_empty() {
             self.watch_for_accumulation()?;

@@ -881,6 +881,11 @@ impl Run<'_> {
         (0..self.problem.system.n_differential()).max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
     }
 
+    /// Whether events follow each other without time to pass: near the end of what is allowed.
+    pub(crate) fn has_rush_of_events(&self) -> bool {
+        self.jumps.events_at_once > MOST_EVENTS_AT_ONCE / 2
+    }
+
     fn watch_for_chattering(&mut self) -> Result<(), SimErrorKind> {
         let settings = self.problem.settings;
         let near = self.t - self.jumps.last_event <= AT_ONCE * (settings.stop - settings.start);
