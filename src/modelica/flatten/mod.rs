@@ -253,8 +253,8 @@ fn described(definition: &ClassDefinition) -> Option<std::sync::Arc<str>> {
     }
 }
 
-/// The `experiment` annotation of a class (MLS §18.4).
-pub fn experiment(definition: &ClassDefinition) -> Experiment {
+/// The `experiment` annotation of a class (MLS §18.4), as it is written.
+pub fn experiment_annotation(definition: &ClassDefinition) -> Option<&Argument> {
     let annotations: Vec<&Annotation> = match &definition.specifier {
         ClassSpecifier::Long(long) => long
             .sections
@@ -267,22 +267,23 @@ pub fn experiment(definition: &ClassDefinition) -> Experiment {
         ClassSpecifier::Short(short) => short.comment.annotation.iter().collect(),
         _ => Vec::new(),
     };
+    let mut arguments = annotations.into_iter().flat_map(|annotation| &annotation.arguments);
+    arguments.find(|argument| named(argument).is_some_and(|(name, _)| name == "experiment"))
+}
+
+/// What the `experiment` annotation of a class says.
+pub fn experiment(definition: &ClassDefinition) -> Experiment {
     let mut found = Experiment::default();
-    for argument in annotations.iter().flat_map(|annotation| &annotation.arguments) {
-        let Some((name, modification)) = named(argument) else { continue };
-        if name != "experiment" {
-            continue;
-        }
-        for setting in &modification.arguments {
-            let Some((name, setting)) = named(setting) else { continue };
-            let value = number(setting);
-            match name.as_str() {
-                "StartTime" => found.start_time = value,
-                "StopTime" => found.stop_time = value,
-                "Interval" => found.interval = value,
-                "Tolerance" => found.tolerance = value,
-                _ => {}
-            }
+    let written = experiment_annotation(definition).and_then(named);
+    for setting in written.iter().flat_map(|(_, modification)| &modification.arguments) {
+        let Some((name, setting)) = named(setting) else { continue };
+        let value = number(setting);
+        match name.as_str() {
+            "StartTime" => found.start_time = value,
+            "StopTime" => found.stop_time = value,
+            "Interval" => found.interval = value,
+            "Tolerance" => found.tolerance = value,
+            _ => {}
         }
     }
     found

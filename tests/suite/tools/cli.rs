@@ -165,6 +165,26 @@ fn simulations_go_to_files() {
     assert!(here.path().join("a.mat").is_file());
 }
 
+/// The class around a model whose inputs follow data has the experiment of the model.
+#[test]
+fn a_simulation_with_inputs_keeps_the_annotation() {
+    let text = "model M input Real u; output Real x(start = 1, fixed = true); equation \
+                der(x) = u - 3*x*x; \
+                annotation(experiment(StopTime = 3, Interval = 0.5, Tolerance = 1e-9)); end M;";
+    let here = folder(&[("M.mo", text), ("u.csv", "time,u\n0,1\n1,2\n2,0\n")]);
+    let run = |more: &[&str]| {
+        let own = ["simulate", "M.mo", "--input", "u.csv", "--output", "r.csv"];
+        let (code, out, errors) = gapi(&here, &[&own, more].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        fs::read_to_string(here.path().join("r.csv")).expect("results")
+    };
+    let annotated = run(&[]);
+    let last = annotated.lines().last().expect("a row");
+    assert!(last.starts_with("3.0,"), "{annotated}");
+    assert_eq!(annotated, run(&["--tolerance", "1e-9"]));
+    assert_ne!(annotated, run(&["--tolerance", "1e-4"]));
+}
+
 #[test]
 fn inputs_follow_the_columns_of_a_file() {
     let model = "model Tank

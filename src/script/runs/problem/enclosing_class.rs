@@ -6,12 +6,12 @@
 use super::file::ValueEntry;
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
-use crate::flatten::RecordedInput;
+use crate::flatten::{self, RecordedInput};
 use crate::models::classes::Enclosing;
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::{
-    Argument, Binding, ClassDefinition, ClassSpecifier, ComponentReference, Element,
+    Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ComponentReference, Element,
     ElementModification, Expression, ExpressionKind, Extends, Modification, Section, TypeSpecifier,
 };
 use crate::syntax::visit::{Rewrite, rewrite_expression};
@@ -180,7 +180,9 @@ impl EnclosingClass {
             session.sources.add(format!("experiment {} of the problem", number + 1), text.as_str());
         let mut parsed = parse_all_of_stored_definition(source, &text)?;
         let Some(class) = parsed.classes.pop() else { return Ok(base.text.clone()) };
-        let class = self.around(Arc::unwrap_or_clone(class), base, place);
+        let of_model = session.classes.library.definition(&base.class);
+        let experiment = of_model.as_deref().and_then(flatten::experiment_annotation).cloned();
+        let class = self.around(Arc::unwrap_or_clone(class), (base, experiment), place);
         let enclosing = Enclosing {
             name: Ident::new(&name),
             model: base.class.to_string(),
@@ -193,8 +195,13 @@ impl EnclosingClass {
         Ok(name)
     }
 
-    /// The class of these declarations and equations, which extends the model.
-    fn around(&self, mut class: ClassDefinition, base: &Base, place: Span) -> ClassDefinition {
+    /// The class of these declarations and equations, which extends the model and has its experiment.
+    fn around(
+        &self,
+        mut class: ClassDefinition,
+        (base, experiment): (&Base, Option<Argument>),
+        place: Span,
+    ) -> ClassDefinition {
         let modification = base.modification.iter().chain(&self.modifications).cloned().collect();
         let extends = Element::Extends(Extends {
             base: TypeSpecifier { name: base.class.clone(), span: base.span },
@@ -206,6 +213,8 @@ impl EnclosingClass {
         if let ClassSpecifier::Long(long) = &mut class.specifier {
             let first = Section::Elements { visibility: None, elements: vec![extends] };
             long.sections.insert(0, first);
+            let annotation = |argument| Annotation { arguments: vec![argument], span: place };
+            long.sections.extend(experiment.map(annotation).map(Section::Annotation));
         }
         class
     }

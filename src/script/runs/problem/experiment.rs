@@ -482,9 +482,9 @@ fn stop_time(
     annotated: Option<f64>,
 ) -> Option<f64> {
     let last = x.iter().copied().filter(|x| x.is_finite()).fold(f64::NEG_INFINITY, f64::max);
-    match entry.stop_time {
-        None if x_name == "time" && last.is_finite() => Some(annotated.unwrap_or(last).max(last)),
-        given => given,
+    match x_name == "time" && last.is_finite() {
+        true => Some(entry.stop_time.or(annotated).unwrap_or(last).max(last)),
+        false => entry.stop_time,
     }
 }
 
