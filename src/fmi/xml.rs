@@ -2,6 +2,7 @@
 
 use crate::FmuError;
 use roxmltree::Node;
+use std::borrow::Cow;
 use std::fmt::{Display, Write};
 use std::str::FromStr;
 
@@ -21,6 +22,26 @@ pub(crate) fn real(text: &str) -> Option<f64> {
     let is_written = digits.starts_with(|c: char| c.is_ascii_digit() || c == '.');
     let is_word = ["INF", "NaN"].contains(&digits);
     text.parse().ok().filter(|_| is_written || is_word)
+}
+
+/// The text of a document. FMI requires UTF-8; Latin-1 is read where the document says so.
+///
+/// # Errors
+/// Bytes that are neither, with their line.
+pub(crate) fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, FmuError> {
+    let valid = match std::str::from_utf8(bytes) {
+        Ok(text) => return Ok(Cow::Borrowed(text)),
+        Err(error) => error.valid_up_to(),
+    };
+    let head = bytes.split(|byte| *byte == b'>').next().unwrap_or_default();
+    let head = String::from_utf8_lossy(head).to_lowercase();
+    if head.starts_with("<?xml") && head.contains("iso-8859-1") {
+        return Ok(Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect()));
+    }
+    let line = 1 + bytes[..valid].iter().filter(|byte| **byte == b'\n').count();
+    let message =
+        format!("byte 0x{:02X} in line {line} is no UTF-8: save it as UTF-8", bytes[valid]);
+    Err(FmuError::Xml(message))
 }
 
 /// A text in XML while it is written.

@@ -25,8 +25,8 @@ const FOLDER: &str = "fmi-headers";
 /// Compiles the libraries that an unpacked unit lacks and has sources of.
 pub(super) fn compile(archive: &Archive, folder: &Path) -> Result<(), String> {
     let words = |error: FmuError| error.to_string();
-    let text = String::from_utf8_lossy(archive.file(DESCRIPTION).map_err(words)?);
-    let description = description::read(&text).map_err(words)?;
+    let text = archive.file(DESCRIPTION).map_err(words)?;
+    let description = description::read(text).map_err(words)?;
     use InterfaceKind::{CoSimulation, ModelExchange, ScheduledExecution};
     for kind in [ModelExchange, CoSimulation, ScheduledExecution] {
         // A kind that the unit does not have.

@@ -50,7 +50,7 @@ pub(crate) fn worker(arguments: &FmuWorkerArgs) -> ExitCode {
 
 fn work(arguments: &FmuWorkerArgs) -> io::Result<()> {
     let to = own_output()?;
-    let text = std::fs::read_to_string(arguments.folder.join("modelDescription.xml"))?;
+    let text = std::fs::read(arguments.folder.join("modelDescription.xml"))?;
     let description = description::read(&text).map_err(io::Error::other)?;
     // What it writes without a folder is removed with the folder.
     let working = super::working_folder(&arguments.folder);

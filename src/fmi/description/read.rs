@@ -10,7 +10,7 @@ use super::{
     Version,
 };
 use crate::FmuError;
-use crate::xml::Element;
+use crate::xml::{Element, decoded};
 use roxmltree::Document;
 use std::collections::HashMap;
 
@@ -19,8 +19,9 @@ use std::collections::HashMap;
 /// # Errors
 /// It is not well-formed, is of another version than FMI 2.0 or 3.0, or contradicts the standard: with the
 /// line.
-pub fn read(text: &str) -> Result<Description, FmuError> {
-    let document = Document::parse(text).map_err(|error| FmuError::Xml(error.to_string()))?;
+pub fn read(text: impl AsRef<[u8]>) -> Result<Description, FmuError> {
+    let text = decoded(text.as_ref())?;
+    let document = Document::parse(&text).map_err(|error| FmuError::Xml(error.to_string()))?;
     let root = Element(document.root_element());
     if root.name() != "fmiModelDescription" {
         return Err(root.error(format!("the root is `{}`, not `fmiModelDescription`", root.name())));

@@ -121,7 +121,7 @@ fn both_versions_are_read_as_they_are_written() {
     }
     let mut description = with_variables(Version::V3);
     description.variables[2].is_internal = true;
-    assert_eq!(read(&write(&description)).unwrap(), description);
+    assert_eq!(read(write(&description)).unwrap(), description);
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn later_versions_may_have_more() {
         error.contains("line 2: `fmiModelDescription` has no attribute `newAttribute`"),
         "{error}"
     );
-    read(&text.replace("fmiVersion=\"3.0\"", "fmiVersion=\"3.1\"")).unwrap();
+    read(text.replace("fmiVersion=\"3.0\"", "fmiVersion=\"3.1\"")).unwrap();
 }
 
 /// Attributes that hold free text.
@@ -259,7 +259,7 @@ fn broken_rules_are_said() {
     let of_3 = |from: &str, to: &str| {
         let text = write(&with_variables(Version::V3));
         assert!(text.contains(from), "{from}: {text}");
-        read(&text.replacen(from, to, 1)).expect_err(to).to_string()
+        read(text.replacen(from, to, 1)).expect_err(to).to_string()
     };
     for (from, to, said) in [
         ("name=\"der(x)\"", "name=\"x\"", "the variable name `x` is in line"),
@@ -335,10 +335,22 @@ fn what_is_wrong_is_said_with_its_line() {
         ),
     ];
     for (text, expected) in cases {
-        let error = read(&text.replace('@', start)).unwrap_err();
+        let error = read(text.replace('@', start)).unwrap_err();
         match &error {
             FmuError::Xml(_) => assert_eq!(expected, "no XML"),
             other => assert!(other.to_string().contains(expected), "{other}"),
         }
     }
+}
+
+#[test]
+fn descriptions_are_utf_8_or_latin_1_by_their_own_word() {
+    let text = include_str!("../../../tests/fmus/latin.xml");
+    let utf = text.replace("ISO-8859-1", "UTF-8");
+    let expected = read(&utf).unwrap();
+    assert!(expected.variables[0].description.as_deref() == Some("Temp\u{e9}rature"));
+    let bytes = |text: &str| text.chars().map(|own| own as u8).collect::<Vec<u8>>();
+    assert_eq!(read(bytes(text)).unwrap(), expected);
+    let error = read(bytes(&utf)).unwrap_err().to_string();
+    assert!(error.contains("byte 0xE9 in line 4 is no UTF-8: save it as UTF-8"), "{error}");
 }

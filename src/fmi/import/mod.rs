@@ -56,7 +56,7 @@ pub use imported::{Imported, is_parameter, why_not_set};
 pub use layout::{Layout, Place, Scalar, is_recorded, refusal, starts};
 pub use message::LogMessage;
 pub use plan::{InterfaceKind, Plan, Samples};
-pub use platform::library_path;
+pub use platform::{library_path, unusable};
 pub use pool::{Ended, Host, NumberedPlan, Pool, Process, Start};
 pub use sources::{Sources, sources};
 #[cfg(feature = "host")]

@@ -59,3 +59,61 @@ pub fn library_path(description: &Description, kind: InterfaceKind) -> Result<St
     };
     Ok(format!("binaries/{platform}/{identifier}{ENDING}"))
 }
+
+/// What is wrong with the bytes of a shared library for this machine, as the end of a sentence; `None`
+/// where nothing is, or the format of the system is not known here (that of Linux is, ELF).
+pub fn unusable(library: &[u8]) -> Option<String> {
+    if !cfg!(target_os = "linux") {
+        return None;
+    }
+    if !library.starts_with(b"\x7fELF") {
+        return Some("is no shared library of Linux".to_owned());
+    }
+    let at = |begin: usize, count: usize| -> Option<u64> {
+        let bytes = library.get(begin..begin + count)?;
+        Some(bytes.iter().rev().fold(0, |value, byte| value << 8 | u64::from(*byte)))
+    };
+    let own = if cfg!(target_arch = "aarch64") { AARCH64 } else { X86_64 };
+    match (at(4, 1), at(18, 2)) {
+        (Some(2), Some(machine)) if machine == own.0 => {}
+        (_, Some(machine)) => {
+            let known = [X86_64, AARCH64, X86].into_iter().find(|one| one.0 == machine);
+            let other = known.map_or("another processor", |one| one.1);
+            return Some(format!("is for {other}, not for {}", own.1));
+        }
+        _ => return Some("is incomplete".to_owned()),
+    }
+    // The table of sections stands at the end.
+    let table = at(40, 8).zip(at(58, 2)).zip(at(60, 2));
+    let end = table.map(|((begin, size), count)| begin.saturating_add(size * count));
+    let length = library.len() as u64;
+    match end {
+        Some(end) if end <= length => None,
+        Some(end) => Some(format!("is incomplete: it ends after {length} of {end} bytes")),
+        None => Some("is incomplete".to_owned()),
+    }
+}
+
+/// Processors by their numbers in ELF.
+const X86: (u64, &str) = (3, "x86");
+const X86_64: (u64, &str) = (62, "x86_64");
+const AARCH64: (u64, &str) = (183, "aarch64");
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::unusable;
+
+    #[test]
+    fn libraries_of_others_and_parts_of_libraries_are_not_usable() {
+        let own = std::fs::read(std::env::current_exe().expect("a path")).expect("readable");
+        assert_eq!(unusable(&own), None);
+        let part = unusable(&own[..own.len() / 2]).expect("incomplete");
+        assert!(part.contains("is incomplete: it ends after"), "{part}");
+        assert_eq!(unusable(&own[..10]).as_deref(), Some("is incomplete"));
+        assert_eq!(unusable(b"text").as_deref(), Some("is no shared library of Linux"));
+        let mut other = own;
+        other[18..20].copy_from_slice(&[40, 0]);
+        let other = unusable(&other).expect("another one");
+        assert!(other.starts_with("is for another processor, not for "), "{other}");
+    }
+}

@@ -7,10 +7,11 @@ use crate::diag::{At, Fault, suggest};
 use crate::errors::{BAD_FMU, FMU_MESSAGE, INTERRUPTED};
 use crate::external::errors::EXTERNAL_REFUSED;
 use crate::fmi::archive::{DESCRIPTION, is_unit};
-use crate::fmi::description::{self, Description, Kind, Variable};
+use crate::fmi::description::{self, Causality, Description, Kind, Variable};
 use crate::fmi::import::{
     FailureClass, Imported, InterfaceKind, Layout, LogMessage, Place, Pool, Samples, Scalar,
-    SimulationFailure, is_parameter, is_recorded, library_path, refusal, sources, why_not_set,
+    SimulationFailure, is_parameter, is_recorded, library_path, refusal, sources, unusable,
+    why_not_set,
 };
 use crate::fmi::{Archive, FmuError};
 use crate::identify::{ImportedModel, Model as _};
@@ -70,8 +71,7 @@ pub fn read(session: &Session, path: &Path) -> Result<UnitFile, Fault> {
     };
     let archive = Archive::read(Cursor::new(bytes)).map_err(wrong)?;
     let text = archive.file(DESCRIPTION).map_err(wrong)?;
-    let text = String::from_utf8_lossy(text);
-    let description = description::read(&text).map_err(wrong)?;
+    let description = description::read(text).map_err(wrong)?;
     Ok(UnitFile { name, archive, description })
 }
 
@@ -110,6 +110,9 @@ pub fn kind(file: &UnitFile, method: Option<&str>) -> Result<InterfaceKind, Faul
     }
     let required =
         library_path(description, kind).map_err(|why| fault!(BAD_FMU, "`{name}`: {why}"))?;
+    if let Some(why) = archive.file(&required).ok().and_then(unusable) {
+        bail!(BAD_FMU, "`{name}`: `{required}` {why}"; help: "export it for this machine")
+    }
     if archive.file(&required).is_err() {
         let sources = sources(archive, description, kind);
         if sources.map_err(|why| fault!(BAD_FMU, "`{name}`: {why}"))?.is_none() {
@@ -271,6 +274,23 @@ fn range<'u>(unit: &'u Imported, variable: &Variable) -> Range<'u> {
     }
 }
 
+/// Refuses samples of an input that are the numbers of no literal of its enumeration.
+///
+/// # Errors
+///
+/// The first such number.
+pub(crate) fn check_samples(
+    unit: &Imported,
+    name: &str,
+    place: Place,
+    mut values: impl Iterator<Item = f64>,
+) -> Result<(), Fault> {
+    let limits = [f64::NEG_INFINITY, f64::INFINITY];
+    let range = Range { limits, ..range(unit, unit.variable(place)) };
+    let subject = format!("the input `{name}` of `{}`", unit.file);
+    values.try_for_each(|value| range.check(&subject, value))
+}
+
 fn refuse_unless_settable(unit: &Imported, name: &str, variable: usize) -> Result<(), Fault> {
     match why_not_set(&unit.description.variables[variable]) {
         None => Ok(()),
@@ -319,9 +339,14 @@ pub fn simulate(
     let scalars = model.layout().scalars().iter();
     let scalars = scalars.filter(|scalar| is_recorded(unit.variable(scalar.place)));
     let kept = scalars.filter(|scalar| only.is_none_or(|only| only.is_match(&scalar.name)));
-    let (parameters, recorded): (Vec<_>, Vec<_>) =
-        kept.partition(|scalar| is_parameter(unit.variable(scalar.place)));
-    let names: Vec<String> = recorded.iter().map(|scalar| scalar.name.clone()).collect();
+    let mut kept: Vec<&Scalar> = kept.collect();
+    kept.sort_by_key(|scalar| !is_parameter(unit.variable(scalar.place)));
+    // What gives arrays their sizes is as it was set.
+    let is_structural =
+        |scalar: &&Scalar| unit.variable(scalar.place).causality == Causality::StructuralParameter;
+    let (structural, kept): (Vec<&Scalar>, Vec<&Scalar>) =
+        kept.into_iter().partition(is_structural);
+    let names: Vec<String> = kept.iter().map(|scalar| scalar.name.clone()).collect();
     let plan = model.planned(&[], &names).at(call)?;
     let mut out = Trajectory::default();
     let run = unit.pool.simulate((&plan, &[]), &settings, &mut out);
@@ -334,9 +359,8 @@ pub fn simulate(
         Some(why) if out.is_empty() => return Err(Unfinished::from(why)),
         why => why,
     };
-    let parameters = parameters.into_iter().map(|own| (own, None));
-    let recorded = recorded.into_iter().enumerate().map(|(column, own)| (own, Some(column)));
-    let table = result_table(model, parameters.chain(recorded), out);
+    note_other_starts(session, model, (&kept, &out));
+    let table = result_table(model, (&structural, &kept), out);
     let simulated = Simulated { table, statistics, hardest: None };
     match why {
         None => Ok(simulated),
@@ -358,25 +382,66 @@ fn why(session: &Session, unit: &Imported, failure: SimulationFailure) -> Fault 
     fault!(BAD_FMU, "the simulation of `{}` failed{at}: {message}", unit.file)
 }
 
-/// The results of scalars: recorded columns, and parameters.
-fn result_table<'s>(
+/// How many parameters a note names.
+const MOST_NAMED: usize = 3;
+
+/// Notes parameters that a unit starts with other values than its description says.
+fn note_other_starts(
+    session: &mut Session,
     model: &ImportedModel,
-    scalars: impl Iterator<Item = (&'s Scalar, Option<usize>)>,
+    (scalars, out): (&[&Scalar], &Trajectory),
+) {
+    let unit = model.unit_of();
+    let mut others = Vec::new();
+    for (column, scalar) in scalars.iter().enumerate() {
+        let Some(&own) = out.column(column).first() else { continue };
+        let said = model.start(scalar.place);
+        let has_start = !unit.variable(scalar.place).start.is_empty();
+        if is_parameter(unit.variable(scalar.place)) && has_start && own != said {
+            others.push(format!("{} = {own} in the place of {said}", scalar.name));
+        }
+    }
+    if let [_, ..] = others.as_slice() {
+        let more = others.len().saturating_sub(MOST_NAMED);
+        others.truncate(MOST_NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        session.note(
+            FMU_MESSAGE,
+            format!(
+                "`{}` computes with other values than its description says: {}{more}; set those \
+                 that you mean",
+                unit.file,
+                others.join(", ")
+            ),
+        );
+    }
+}
+
+/// The results of structural parameters, and of what was recorded in this order; parameters are constant.
+fn result_table(
+    model: &ImportedModel,
+    (structural, recorded): (&[&Scalar], &[&Scalar]),
     mut out: Trajectory,
 ) -> ResultTable {
     let mut table = ResultTable::new(out.time().to_vec());
-    for (scalar, column) in scalars {
-        let variable = model.unit_of().variable(scalar.place);
-        table.series.push(Series {
-            name: scalar.name.clone(),
-            unit: model.unit(&scalar.name).unwrap_or_default(),
-            description: variable.description.clone().unwrap_or_default(),
-            values: match column {
-                Some(column) => Values::Trajectory(out.take_column(column)),
-                None => Values::Constant(model.start(scalar.place)),
-            },
-        });
+    let constant = |scalar: &&Scalar| Values::Constant(model.start(scalar.place));
+    let mut all: Vec<(&Scalar, Values)> =
+        structural.iter().map(|scalar| (*scalar, constant(scalar))).collect();
+    for (column, scalar) in recorded.iter().enumerate() {
+        let values = out.take_column(column);
+        let is_constant = is_parameter(model.unit_of().variable(scalar.place));
+        let values = match values.first().filter(|_| is_constant) {
+            Some(value) => Values::Constant(*value),
+            None => Values::Trajectory(values),
+        };
+        all.push((*scalar, values));
     }
+    table.series.extend(all.into_iter().map(|(scalar, values)| Series {
+        name: scalar.name.clone(),
+        unit: model.unit(&scalar.name).unwrap_or_default(),
+        description: model.description(&scalar.name).unwrap_or_default(),
+        values,
+    }));
     table
 }
 

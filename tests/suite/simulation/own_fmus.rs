@@ -338,7 +338,7 @@ fn strings_and_start_values_are_those_of_the_model() {
         let bytes = fs::read(here.path().join("unit.fmu")).expect("a unit");
         let archive = Archive::read(std::io::Cursor::new(bytes)).expect("an archive");
         let text = archive.file("modelDescription.xml").expect("a description");
-        let description = description::read(&String::from_utf8_lossy(text)).expect("a description");
+        let description = description::read(text).expect("a description");
         let start = |name: &str| {
             let own = description.find(name).unwrap_or_else(|| panic!("no `{name}`"));
             own.start.join(" ")
@@ -447,4 +447,57 @@ fn units_are_not_read_as_texts() {
         assert!(text.contains("gapi simulate x.fmu") && !text.contains("UTF-8"), "{text}");
         assert!(code == 1 || arguments.contains(&"s.mos"), "{arguments:?}: {code}");
     }
+}
+
+/// A description that says other start values than the binary has: the results are those of the binary, and
+/// the difference is said.
+#[test]
+fn parameters_in_results_are_those_that_the_unit_computes_with() {
+    let here = folder(&[("P.mo", DECAY)]);
+    let base = ["export-fmu", "P.mo", "--model", "P.Decay", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &base);
+    assert_eq!(code, 0, "{out}{errors}");
+    let path = here.path().join("unit.fmu");
+    let bytes = fs::read(&path).expect("a unit");
+    let mut archive = Archive::read(std::io::Cursor::new(bytes)).expect("an archive");
+    let text = archive.file("modelDescription.xml").expect("a description").to_vec();
+    let text = String::from_utf8(text).expect("text").replace("start=\"3.0\"", "start=\"5.0\"");
+    archive.insert("modelDescription.xml", text);
+    fs::write(&path, archive.to_bytes().expect("bytes")).expect("written");
+    let run = ["simulate", "unit.fmu", "--allow-external", "--output", "r.csv"];
+    let note = "computes with other values than its description says: level = 3 in the place of 5";
+    for (more, level, is_noted) in [(&[][..], 3.0, true), (&["--set", "level=5"], 5.0, false)] {
+        let (code, _, errors) = gapi(&here, &[&run, more].concat());
+        assert_eq!(code, 0, "{errors}");
+        assert_eq!(errors.contains(note), is_noted, "{errors}");
+        let all = columns(&here.path().join("r.csv"));
+        let last = |name: &str| *column(&all, name).last().expect("a row");
+        assert_eq!(last("level"), level);
+        near(last("y"), level * (-1.0f64).exp(), 1e-6);
+    }
+}
+
+/// Samples of an enumeration are numbers of its literals.
+#[test]
+fn inputs_have_values_of_their_enumeration() {
+    let text = "model M type Mode = enumeration(off, on); input Mode u; \
+                Real x(start = 0, fixed = true); equation \
+                der(x) = if u == Mode.on then 1 else 0; end M;";
+    let here = folder(&[
+        ("M.mo", text),
+        ("good.csv", "time,u\n0,1\n1,2\n2,2\n"),
+        ("bad.csv", "time,u\n0,1\n1,7\n2,2\n"),
+    ]);
+    let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let run = ["simulate", "unit.fmu", "--allow-external", "--stop-time", "2", "--output", "r.csv"];
+    let run = [&run[..], &["--input"]].concat();
+    let (code, _, errors) = gapi(&here, &[&run[..], &["good.csv"]].concat());
+    assert_eq!(code, 0, "{errors}");
+    let all = columns(&here.path().join("r.csv"));
+    near(*column(&all, "x").last().expect("a row"), 1.0, 1e-6);
+    let (code, _, errors) = gapi(&here, &[&run[..], &["bad.csv"]].concat());
+    assert_eq!(code, 1, "{errors}");
+    assert!(errors.contains("the input `u` of `unit.fmu` cannot be 7"), "{errors}");
+    assert!(errors.contains("its values are off (1), on (2)"), "{errors}");
 }

@@ -38,8 +38,6 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/session.rs", "WriteAll", 1),
     ("cli/simulate.rs", "Named", 1),
     ("cli/simulate.rs", "Read", 1),
-    ("cli/simulate/imported.rs", "Named", 1),
-    ("cli/simulate/imported.rs", "Read", 2),
     ("cli/verify/mod.rs", "Named", 1),
     ("cli/world.rs", "Create", 1),
     ("cli/world.rs", "Own", 1),

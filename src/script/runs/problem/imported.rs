@@ -247,6 +247,13 @@ fn samples(
     let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
     let declared = |name: &str| declared(unit, &layout, name);
     let (all, undecided) = inputs::recorded(entry, table, times, &declared, notes)?;
+    for one in &all {
+        let values = one.samples().iter().map(|(_, value)| *value);
+        if let Some(place) = layout.find(&one.name) {
+            let checked = imported::check_samples(unit, &one.name, place, values);
+            checked.map_err(|fault| fault.at(Span::NONE))?;
+        }
+    }
     let varying = all.iter().filter(|one| !one.is_held());
     let varying: Vec<String> = varying.map(|one| format!("`{}`", one.name)).collect();
     if unit.kind == InterfaceKind::CoSimulation && !varying.is_empty() {
