@@ -168,7 +168,11 @@ fn read_parameter(element: &Element) -> Result<Parameter, FmuError> {
         "Boolean" => ParameterValue::Truth(value.is_true("value")?),
         "String" | "Enumeration" => ParameterValue::Text(value.required("value")?.to_owned()),
         whole if ["Integer", "Int", "UInt"].iter().any(|kind| whole.starts_with(kind)) => {
-            number(value)?
+            let number = value.needed::<f64>("value")?;
+            if number.fract() != 0.0 {
+                return Err(value.error(format!("`{name}` is {whole} and cannot be {number}")));
+            }
+            ParameterValue::Number(number)
         }
         other => return Err(value.error(format!("`{name}` is {other}, which is not read"))),
     };

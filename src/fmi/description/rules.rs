@@ -354,7 +354,7 @@ impl Checked<'_, '_, '_> {
     /// In FMI 3.0 no two variables have one value reference.
     fn value_references(&self) -> Result<(), FmuError> {
         let variables = self.elements.iter().zip(&self.description.variables);
-        unique("the value reference", variables.map(|(element, own)| (*element, own.reference)))
+        unique("value reference", variables.map(|(element, own)| (*element, own.reference)))
     }
 
     /// At most one variable is the independent one, in FMI 3.0 exactly one; it is a real number.

@@ -19,6 +19,8 @@ pub(super) struct Inputs<'a> {
 /// An input with the piece of its samples that holds now.
 struct Followed<'a> {
     samples: &'a Samples,
+    /// Whether it keeps the value of a sample until the next: what is not continuous does.
+    is_held: bool,
     /// The number of the sample at which the piece begins; `None` before the first one.
     piece: Option<usize>,
     /// Its variable among those of the inputs.
@@ -66,7 +68,9 @@ impl<'a> Inputs<'a> {
                 });
                 inputs.variables.len() - 1
             });
-            inputs.followed.push(Followed { samples, piece: None, variable, reading: None });
+            let is_held = samples.is_held || !inputs.variables[variable].is_continuous;
+            let (piece, reading) = (None, None);
+            inputs.followed.push(Followed { samples, is_held, piece, variable, reading });
         }
         inputs
     }
@@ -130,11 +134,11 @@ impl<'a> Inputs<'a> {
 
 impl Followed<'_> {
     fn value(&self, t: f64) -> f64 {
-        let Samples { times, values, is_held, .. } = self.samples;
+        let Samples { times, values, .. } = self.samples;
         let Some(piece) = self.piece else { return values.first().copied().unwrap_or(0.0) };
         let begin = values[piece];
         match times.get(piece + 1) {
-            Some(end) if !is_held && *end > times[piece] => {
+            Some(end) if !self.is_held && *end > times[piece] => {
                 let share = (t - times[piece]) / (end - times[piece]);
                 begin + share * (values[piece + 1] - begin)
             }
@@ -149,7 +153,13 @@ mod tests {
 
     fn value(samples: &Samples, seek: f64, t: f64) -> f64 {
         let mut inputs = Inputs {
-            followed: vec![Followed { samples, piece: None, variable: 0, reading: None }],
+            followed: vec![Followed {
+                samples,
+                is_held: samples.is_held,
+                piece: None,
+                variable: 0,
+                reading: None,
+            }],
             variables: Vec::new(),
         };
         inputs.seek(seek);

@@ -196,11 +196,15 @@ impl Given {
         let literal = types.and_then(|own| own.items.iter().find(|item| item.name == text.trim()));
         let value = match (text.trim(), literal) {
             (_, Some(item)) => item.value as f64,
-            ("true", _) => 1.0,
-            ("false", _) => 0.0,
+            ("true", _) if variable.kind == Kind::Boolean => 1.0,
+            ("false", _) if variable.kind == Kind::Boolean => 0.0,
             (number, _) => number.parse().map_err(|_| {
-                fault!(BAD_FMU, "`{name}` of `{}` cannot be `{text}`", unit.file)
-                    .help("write a number, `true`, `false`, or a literal of its enumeration")
+                fault!(BAD_FMU, "`{name}` of `{}` cannot be `{text}`", unit.file).help(
+                    match variable.kind {
+                        Kind::Boolean => "write `true` or `false`",
+                        _ => "write a number, or a literal of its enumeration",
+                    },
+                )
             })?,
         };
         self.set(unit, name, value)

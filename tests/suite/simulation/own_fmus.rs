@@ -501,3 +501,22 @@ fn inputs_have_values_of_their_enumeration() {
     assert!(errors.contains("the input `u` of `unit.fmu` cannot be 7"), "{errors}");
     assert!(errors.contains("its values are off (1), on (2)"), "{errors}");
 }
+
+/// What is not continuous keeps the value of a sample until the next one, also between the events of
+/// co-simulation.
+#[test]
+fn discrete_inputs_are_held() {
+    let text = "model M discrete input Real w(start = 0); Real x(start = 0, fixed = true); \
+                equation der(x) = w; annotation(experiment(StopTime = 2)); end M;";
+    let here = folder(&[("M.mo", text), ("w.csv", "time,w\n0,1\n1,2\n2,3\n")]);
+    let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    for method in ["co-simulation", "dassl"] {
+        let all = simulated(&here, &["--input", "w.csv", "--method", method, "--intervals", "4"]);
+        near(*column(&all, "x").last().expect("a row"), 3.0, 1e-6);
+        let between = |t: f64| t.fract() == 0.5;
+        for (t, w) in column(&all, "time").iter().zip(column(&all, "w")) {
+            assert!(!between(*t) || *w == t.ceil(), "{method}: {w} at {t} s");
+        }
+    }
+}

@@ -4,6 +4,8 @@
 
 #include "fmi2FunctionTypes.h"
 #include "fmi2TypesPlatform.h"
+/* As the headers of the standard do: sources rely on it. */
+#include <stdlib.h>
 
 #define fmi2Version "2.0"
 

@@ -4,6 +4,8 @@
 
 #include "fmi3FunctionTypes.h"
 #include "fmi3PlatformTypes.h"
+/* As the headers of the standard do: sources rely on it. */
+#include <stdlib.h>
 
 #define fmi3Version "3.0"
 
