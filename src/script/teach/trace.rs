@@ -51,9 +51,9 @@ impl Trace {
         trace.cut = !whole;
         if trace.generations.is_empty() {
             bail!(
-                BAD_TRACE, "the trace contains no generation: no individual was simulated, and no operator was called";
-                help: "trace a script that calls `Eval`, such as `scripts/GAPILib.mos`, or an \
-                       operator such as `Cross` or `Op_Crossover`"
+                BAD_TRACE, "the trace contains no generation: no `Eval` and no operator was called";
+                help: "`identify` is not recorded step by step: take a script that calls `Eval`, such as \
+                       `scripts/GAPILib.mos`, or an operator such as `Cross` or `Op_Crossover`"
             );
         }
         if trace.subject.parameters.is_empty() {
