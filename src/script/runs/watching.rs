@@ -84,10 +84,13 @@ impl Session {
     }
 }
 
-/// How far a run is, of so many generations.
+/// How far a run is, of so many generations; of an unknown number where there have been more, as with a loop
+/// around several runs.
 fn progress(recorder: &Recorder, total: u64) -> Progress {
     let observed = &recorder.observed;
-    Progress::of(observed, recorder.counted(), [observed.generations(), total])
+    let generations = observed.generations();
+    let total = if generations > total { 0 } else { total };
+    Progress::of(observed, recorder.counted(), [generations, total])
 }
 
 fn drawn(recorder: &Recorder, study: &Study, genomes: &Genomes) -> Drawn {
