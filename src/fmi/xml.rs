@@ -40,7 +40,7 @@ pub(crate) fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, FmuError> {
     }
     let line = 1 + bytes[..valid].iter().filter(|byte| **byte == b'\n').count();
     let message =
-        format!("byte 0x{:02X} in line {line} is no UTF-8: save it as UTF-8", bytes[valid]);
+        format!("byte 0x{:02X} in line {line} is not UTF-8: save it as UTF-8", bytes[valid]);
     Err(FmuError::Xml(message))
 }
 

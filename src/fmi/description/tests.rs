@@ -352,5 +352,5 @@ fn descriptions_are_utf_8_or_latin_1_by_their_own_word() {
     let bytes = |text: &str| text.chars().map(|own| own as u8).collect::<Vec<u8>>();
     assert_eq!(read(bytes(text)).unwrap(), expected);
     let error = read(bytes(&utf)).unwrap_err().to_string();
-    assert!(error.contains("byte 0xE9 in line 4 is no UTF-8: save it as UTF-8"), "{error}");
+    assert!(error.contains("byte 0xE9 in line 4 is not UTF-8: save it as UTF-8"), "{error}");
 }

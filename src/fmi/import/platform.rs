@@ -67,7 +67,7 @@ pub fn unusable(library: &[u8]) -> Option<String> {
         return None;
     }
     if !library.starts_with(b"\x7fELF") {
-        return Some("is no shared library of Linux".to_owned());
+        return Some("is not a shared library of Linux".to_owned());
     }
     let at = |begin: usize, count: usize| -> Option<u64> {
         let bytes = library.get(begin..begin + count)?;
@@ -110,7 +110,7 @@ mod tests {
         let part = unusable(&own[..own.len() / 2]).expect("incomplete");
         assert!(part.contains("is incomplete: it ends after"), "{part}");
         assert_eq!(unusable(&own[..10]).as_deref(), Some("is incomplete"));
-        assert_eq!(unusable(b"text").as_deref(), Some("is no shared library of Linux"));
+        assert_eq!(unusable(b"text").as_deref(), Some("is not a shared library of Linux"));
         let mut other = own;
         other[18..20].copy_from_slice(&[40, 0]);
         let other = unusable(&other).expect("another one");

@@ -388,6 +388,9 @@ fn why(session: &Session, unit: &Imported, failure: SimulationFailure) -> Fault 
 
 /// How many parameters a note names.
 const MOST_NAMED: usize = 3;
+/// Relative difference of values that are the same but for the digits of a description, or for those of
+/// single precision, of which there are seven.
+const WRITTEN: f64 = 1e-6;
 
 /// Notes parameters that a unit starts with other values than its description says.
 fn note_other_starts(
@@ -401,7 +404,8 @@ fn note_other_starts(
         let Some(&own) = out.column(column).first() else { continue };
         let said = model.start(scalar.place);
         let has_start = !unit.variable(scalar.place).start.is_empty();
-        if is_parameter(unit.variable(scalar.place)) && has_start && own != said {
+        let agrees = own == said || (own - said).abs() <= WRITTEN * own.abs().max(said.abs());
+        if is_parameter(unit.variable(scalar.place)) && has_start && !agrees {
             others.push(format!("{} = {own} in the place of {said}", scalar.name));
         }
     }

@@ -535,7 +535,7 @@ fn problems_name_what_a_unit_does_not_have() {
 
 /// What is said of a text in the place of a library.
 const UNUSABLE: &str =
-    if cfg!(target_os = "linux") { "is no shared library of Linux" } else { "cannot be loaded" };
+    if cfg!(target_os = "linux") { "is not a shared library of Linux" } else { "cannot be loaded" };
 
 /// What is no unit, or none for this machine, is refused with its file and a remedy.
 #[test]
