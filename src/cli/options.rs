@@ -35,8 +35,9 @@ pub(super) struct Global {
     /// secrets (repeatable)
     #[arg(long, global = true, value_name = "NAME", help_heading = ALLOWED)]
     pub(crate) allow_env: Vec<String>,
-    /// Allow this library to bring functions in C, or this functional mock-up unit (FMU) to run; without
-    /// LIBRARY, all (repeatable): they can do whatever you can do
+    /// Allow this library to bring functions in C, or this functional mock-up unit (FMU) to run: its path, or
+    /// the name of its file in any folder; without LIBRARY, all (repeatable): they can do whatever you
+    /// can do
     #[arg(long, global = true, value_name = "LIBRARY", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = ALL_LIBRARIES, help_heading = ALLOWED)]
     pub allow_external: Vec<String>,

@@ -67,8 +67,12 @@ fn grant_asked(session: &mut Session, global: &Global) {
         session.world.grant(Grant::WriteAll);
     }
     for library in &global.allow_external {
-        let library = Some(library.as_str()).filter(|name| *name != ALL_LIBRARIES);
-        session.world.grant(Grant::ExternalCode(library));
+        let is_path = Path::new(library).components().count() > 1;
+        session.world.grant(match library.as_str() {
+            ALL_LIBRARIES => Grant::ExternalCode(None),
+            path if is_path => Grant::ExternalFile(Path::new(path)),
+            name => Grant::ExternalCode(Some(name)),
+        });
     }
     for folder in &global.deny_read {
         session.world.grant(Grant::Deny(folder));

@@ -8,6 +8,13 @@ use crate::sim::{Failure, SimErrorKind};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
+/// Writes a matrix times a vector.
+fn product(matrix: &DMatrix<f64>, vector: &[f64], out: &mut [f64]) {
+    for (out, row) in out.iter_mut().zip(matrix.row_iter()) {
+        *out = row.iter().zip(vector).map(|(entry, other)| entry * other).sum();
+    }
+}
+
 impl Instance {
     /// ∂unknowns/∂knowns at the values at hand, by value references: rows of the unknowns, columns of
     /// the knowns, which are continuous states and inputs, parameters, and the time; during the
@@ -49,10 +56,7 @@ impl Instance {
         seed: &[f64],
         out: &mut [f64],
     ) -> Result<(), Wrong> {
-        let jacobian = self.jacobian(unknowns, knowns)?;
-        for (out, row) in out.iter_mut().zip(jacobian.row_iter()) {
-            *out = row.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
-        }
+        product(&self.jacobian(unknowns, knowns)?, seed, out);
         Ok(())
     }
 
@@ -63,10 +67,7 @@ impl Instance {
         seed: &[f64],
         out: &mut [f64],
     ) -> Result<(), Wrong> {
-        let jacobian = self.jacobian(unknowns, knowns)?;
-        for (out, column) in out.iter_mut().zip(jacobian.column_iter()) {
-            *out = column.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
-        }
+        product(&self.jacobian(unknowns, knowns)?.transpose(), seed, out);
         Ok(())
     }
 

@@ -252,7 +252,10 @@ impl Instance for ImportedInstance {
 
 fn kind(class: FailureClass) -> SimErrorKind {
     match class {
-        FailureClass::Unit | FailureClass::Derivatives | FailureClass::Process => {
+        FailureClass::Instance
+        | FailureClass::Unit
+        | FailureClass::Derivatives
+        | FailureClass::Process => {
             SimErrorKind::Evaluation(Failure::Function { function: 0, at: 0, reason: 0 })
         }
         FailureClass::Solver => SimErrorKind::StepSize,

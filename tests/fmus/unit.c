@@ -1,7 +1,9 @@
 /* A unit for tests, as FMI 2.0 and as FMI 3.0 (FMI is 2 or 3), for model exchange and co-simulation:
 
      x' = -k x + u,  x(0) = x0;  at t = 1 x jumps by `jump`;  n counts how often x falls below `threshold`;
-     y = (c[1] + ... + c[m]) x;  `fault` chooses what goes wrong after t = 0.5.
+     y = (c[1] + ... + c[m]) x;  w = 2 u;  `fault` chooses what goes wrong after t = 0.5.
+
+   As FMI 2.0 it takes derivatives of u. Its parameter `other` starts with 7, whatever its description says.
 
    In scheduled execution a tick of `each` makes x (1 - k/10) x and adds 1 to n, one of `trigger` adds u to x
    and 10 to n; a quarter of a second after the third tick of `each`, `wait` ticks and adds 100 to n.
@@ -21,12 +23,12 @@
 #endif
 
 enum { X0 = 1, X = 2, DER_X = 3, K = 4, U = 5, Y = 6, JUMP = 7, THRESHOLD = 8, COUNT = 9, FAULT = 10,
-       SIZE = 11, C = 12, LABEL = 13, GAIN_ON = 14, EACH = 21, TRIGGER = 22, WAIT = 23 };
+       SIZE = 11, C = 12, LABEL = 13, GAIN_ON = 14, W = 15, OTHER = 16, EACH = 21, TRIGGER = 22, WAIT = 23 };
 enum { OK = 0, DISCARD = 2, ERROR = 3 };
-enum { CRASH = 1, HANG, REPORT, REFUSE, LEAVE, PRINT, NOT_A_NUMBER, WRITE };
+enum { CRASH = 1, HANG, REPORT, REFUSE, LEAVE, PRINT, NOT_A_NUMBER, WRITE, NO_OUTPUT, END, AWAY };
 
 typedef struct {
-    double t, x0, x, k, u, jump, threshold, c[4];
+    double t, x0, x, k, u, du, jump, threshold, other, last, c[4];
     int32_t n, fault;
     uint64_t m;
     bool gain_on, jumped, below, is_begun, needs_event, waits;
@@ -39,7 +41,7 @@ static void say(Unit *unit, int status, const char *text);
 
 static Unit *made(void) {
     Unit *unit = calloc(1, sizeof(Unit));
-    unit->x0 = 1; unit->k = 1; unit->m = 2; unit->c[0] = 1; unit->c[1] = 0; unit->gain_on = true;
+    unit->x0 = 1; unit->k = 1; unit->m = 2; unit->other = 7; unit->c[0] = 1; unit->c[1] = 0; unit->gain_on = true;
     unit->threshold = -1e300;
     return unit;
 }
@@ -51,6 +53,7 @@ static double derivative(Unit *unit) {
 
 static double output(Unit *unit) {
     double gain = 0;
+    if (unit->fault == NO_OUTPUT && unit->t > 0.5) return NAN;
     for (uint64_t i = 0; i < unit->m; i++) gain += unit->c[i];
     return unit->gain_on ? gain * unit->x : 0;
 }
@@ -80,21 +83,27 @@ static int update(Unit *unit) {
     return OK;
 }
 
-/* Co-simulation: the exact solution for a constant input. */
+/* Co-simulation: the exact solution for an input that is a line. */
 static int step(Unit *unit, double t, double h) {
     unit->t = t;
     double end = t + h;
     while (unit->t < end - 1e-12 * fabs(end)) {
         double next = !unit->jumped && unit->t < 1 && end >= 1 ? 1 : end, d = next - unit->t;
-        double rest = unit->k != 0 ? unit->u / unit->k : 0;
-        unit->x = rest + (unit->x - rest) * exp(-unit->k * d);
+        double slope = unit->k != 0 ? unit->du / unit->k : 0;
+        double rest = unit->k != 0 ? (unit->u - slope) / unit->k : 0;
+        unit->x = rest + slope * d + (unit->x - rest) * exp(-unit->k * d);
+        unit->u += unit->du * d;
         unit->t = next;
         int status = wrong(unit);
         if (status != OK) return status;
         update(unit);
     }
+    unit->last = unit->fault == AWAY ? 99 : unit->t;
     return OK;
 }
+
+/* Whether the unit ends the simulation. */
+static bool ends_now(Unit *unit) { return unit->t > 0.5 && (unit->fault == END || unit->fault == AWAY); }
 
 static int set_real(Unit *unit, unsigned reference, double value) {
     switch (reference) {
@@ -103,6 +112,7 @@ static int set_real(Unit *unit, unsigned reference, double value) {
     case U: unit->u = value; return OK;
     case JUMP: unit->jump = value; return OK;
     case THRESHOLD: unit->threshold = value; return OK;
+    case OTHER: unit->other = value; return OK;
     default: return ERROR;
     }
 }
@@ -117,6 +127,8 @@ static int get_real(Unit *unit, unsigned reference, double *value) {
     case Y: *value = output(unit); return OK;
     case JUMP: *value = unit->jump; return OK;
     case THRESHOLD: *value = unit->threshold; return OK;
+    case W: *value = 2 * unit->u; return OK;
+    case OTHER: *value = unit->other; return OK;
     default: return ERROR;
     }
 }
@@ -204,7 +216,17 @@ EXPORT int fmi2GetDerivatives(void *c, double d[], size_t n) { (void)n; d[0] = d
 EXPORT int fmi2GetEventIndicators(void *c, double z[], size_t n) {
     (void)n; z[0] = ((Unit *)c)->x - ((Unit *)c)->threshold; return OK;
 }
-EXPORT int fmi2DoStep(void *c, double t, double h, int set) { (void)set; return step(c, t, h); }
+EXPORT int fmi2SetRealInputDerivatives(void *c, const unsigned r[], size_t n, const int order[], const double v[]) {
+    for (size_t i = 0; i < n; i++) { if (r[i] != U || order[i] != 1) return ERROR; ((Unit *)c)->du = v[i]; }
+    return OK;
+}
+EXPORT int fmi2DoStep(void *c, double t, double h, int set) {
+    (void)set;
+    int status = step(c, t, h);
+    return status == OK && ends_now(c) ? DISCARD : status;
+}
+EXPORT int fmi2GetBooleanStatus(void *c, int kind, int *value) { (void)kind; *value = ends_now(c); return OK; }
+EXPORT int fmi2GetRealStatus(void *c, int kind, double *value) { (void)kind; *value = ((Unit *)c)->last; return OK; }
 #else
 typedef void (*Logger)(void *, int, const char *, const char *);
 
@@ -296,7 +318,7 @@ EXPORT int fmi3UpdateDiscreteStates(void *c, bool *again, bool *ends, bool *nomi
 EXPORT int fmi3EnterContinuousTimeMode(void *c) { (void)c; return OK; }
 EXPORT int fmi3EnterStepMode(void *c) { (void)c; return OK; }
 EXPORT int fmi3CompletedIntegratorStep(void *c, bool last, bool *event, bool *ends) {
-    (void)c; (void)last; *event = false; *ends = false; return OK;
+    (void)last; *event = false; *ends = ends_now(c); return OK;
 }
 EXPORT int fmi3SetTime(void *c, double t) { ((Unit *)c)->t = t; return wrong(c); }
 EXPORT int fmi3SetContinuousStates(void *c, const double x[], size_t n) { (void)n; ((Unit *)c)->x = x[0]; return OK; }
@@ -337,6 +359,11 @@ EXPORT int fmi3GetIntervalDecimal(void *c, const uint32_t r[], size_t n, double 
     return OK;
 }
 EXPORT int fmi3DoStep(void *c, double t, double h, bool set, bool *event, bool *ends, bool *early, double *last) {
-    (void)set; *event = *ends = *early = false; *last = t + h; return step(c, t, h);
+    (void)set;
+    int status = step(c, t, h);
+    *event = false;
+    *ends = *early = ends_now(c);
+    *last = ((Unit *)c)->last;
+    return status;
 }
 #endif

@@ -7,6 +7,7 @@ mod worker;
 
 pub(super) use worker::{FmuWorkerArgs, worker};
 
+use crate::disk::real_path;
 use crate::fmi::Archive;
 use crate::fmi::import::{Host, Process, Start};
 use crate::script::access::policy::ExternalCode;
@@ -31,8 +32,8 @@ impl LocalHost {
 }
 
 impl Host for LocalHost {
-    fn permits(&self, file: &str) -> bool {
-        self.allowed.permits_file(file)
+    fn permits(&self, file: &Path) -> bool {
+        self.allowed.permits_file(&real_path(file))
     }
 
     fn install(&self, archive: &Archive) -> Result<Box<dyn Start>, String> {

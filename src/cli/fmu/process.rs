@@ -21,6 +21,8 @@ const LONGEST_LINE: u64 = 1000;
 #[derive(Debug, Default)]
 struct Printed {
     lines: Vec<String>,
+    /// The last one, also where it is not kept.
+    last: String,
     /// For how many answers it is complete.
     answers: u64,
 }
@@ -64,14 +66,13 @@ impl WorkerProcess {
         Ok(WorkerProcess { child, to, answers, printed, received: 0, listener })
     }
 
-    /// Ends the process; how it has ended by itself, in one sentence.
-    fn end(&mut self) -> String {
+    /// Ends the process; how it has ended by itself.
+    fn end(&mut self) -> Ended {
         self.to = None;
         let status = self.ended().or_else(|| {
             let _ = self.child.kill();
             self.child.wait().ok()
         });
-        let words = status.map_or_else(|| "its process has ended".to_owned(), described);
         // Its last line tells more, but a process that it has started may hold the stream open.
         let begin = Instant::now();
         let is_listening = || self.listener.as_ref().is_some_and(|own| !own.is_finished());
@@ -79,10 +80,15 @@ impl WorkerProcess {
             std::thread::sleep(TICK);
         }
         let printed = self.printed.0.lock().unwrap_or_else(PoisonError::into_inner);
-        match printed.lines.last() {
-            Some(line) => format!("{words}; it printed last: {line}"),
-            None => words,
+        let last = printed.last.clone();
+        if status.and_then(|status| status.code()) == Some(i32::from(HUNG)) {
+            return Ended::Hung(last);
         }
+        let words = status.map_or_else(|| "its process has ended".to_owned(), described);
+        Ended::Itself(match last.is_empty() {
+            false => format!("{words}; it printed last: {last}"),
+            true => words,
+        })
     }
 
     /// How the process has ended, where it does so by itself.
@@ -114,7 +120,7 @@ impl WorkerProcess {
 }
 
 impl Process for WorkerProcess {
-    fn send(&mut self, request: &Request) -> Result<(), String> {
+    fn send(&mut self, request: &Request) -> Result<(), Ended> {
         let sent = self.to.as_mut().is_some_and(|to| send(to, request).is_ok());
         if sent { Ok(()) } else { Err(self.end()) }
     }
@@ -133,7 +139,7 @@ impl Process for WorkerProcess {
                     answer.messages.extend(self.take_printed());
                     return Ok(answer);
                 }
-                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Itself(self.end())),
+                Err(RecvTimeoutError::Disconnected) => return Err(self.end()),
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if cancelled.is_none() && cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
@@ -175,8 +181,11 @@ fn listen(from: ChildStderr, printed: &Shared) {
             None => (text, false),
         };
         let mut heard = printed.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if !text.is_empty() && heard.lines.len() < MOST_LINES {
-            heard.lines.push(text);
+        if !text.is_empty() {
+            heard.last.clone_from(&text);
+            if heard.lines.len() < MOST_LINES {
+                heard.lines.push(text);
+            }
         }
         if is_answered {
             heard.answers += 1;
@@ -201,7 +210,6 @@ fn described(status: ExitStatus) -> String {
         return format!("its process was ended by signal {signal}{name}");
     }
     match status.code() {
-        Some(code) if code == i32::from(HUNG) => "a call of it did not return".to_owned(),
         Some(code) => format!("it ended its process with exit code {code}"),
         None => "its process has ended".to_owned(),
     }

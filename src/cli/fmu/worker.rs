@@ -98,22 +98,25 @@ fn patience() -> io::Result<Duration> {
 
 /// Ends the process where a call does not return.
 fn watch(calls: &CallWatch, patience: Duration) {
-    let mut running: Option<(u64, Instant)> = None;
+    let mut before: Option<(u64, Instant)> = None;
     loop {
         std::thread::sleep(TICK);
-        running = match (calls.running(), running) {
-            (Some(call), Some((before, since))) if call == before => {
-                if since.elapsed() > patience {
-                    terminal::eprint(&format!(
-                        "a call of the FMU has not returned for {} s\n",
-                        patience.as_secs_f64()
-                    ));
-                    #[allow(clippy::exit, reason = "the thread that works does not come back")]
-                    std::process::exit(i32::from(HUNG));
-                }
-                Some((before, since))
-            }
-            (call, _) => call.map(|call| (call, Instant::now())),
+        let Some((call, function)) = calls.running() else {
+            before = None;
+            continue;
         };
+        let since = match before {
+            Some((number, since)) if number == call => since,
+            _ => Instant::now(),
+        };
+        before = Some((call, since));
+        if since.elapsed() > patience {
+            terminal::eprint(&format!(
+                "a call of `{function}` has not returned for {} s ({VARIABLE} allows more)\n",
+                patience.as_secs_f64()
+            ));
+            #[allow(clippy::exit, reason = "the thread that works does not come back")]
+            std::process::exit(i32::from(HUNG));
+        }
     }
 }

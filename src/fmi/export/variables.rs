@@ -413,11 +413,11 @@ pub(super) fn enumerations(program: &Program, table: &Table) -> Vec<TypeDefiniti
         if !named.contains(&&name) {
             continue;
         }
-        let items = definition.literals.iter().zip(1..);
-        let item = |(literal, value): (&_, i64)| Item {
+        let items = definition.literals.iter().enumerate();
+        let item = |(at, literal): (usize, &_)| Item {
             name: format!("{literal}"),
-            value,
-            description: None,
+            value: at as i64 + 1,
+            description: definition.descriptions.get(at).filter(|own| !own.is_empty()).cloned(),
         };
         known.entry(name.clone()).or_insert_with(|| TypeDefinition {
             name,

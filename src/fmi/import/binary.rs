@@ -51,7 +51,7 @@ impl Binary {
     /// # Errors
     /// Why the system does not load it, in its own words.
     pub fn load(path: &Path, version: Version, watch: Arc<CallWatch>) -> Result<Binary, String> {
-        watch.enter();
+        watch.enter("dlopen");
         // SAFETY: loading runs code of the library, which the user has allowed.
         let library = unsafe { Library::new(path) }.map_err(|error| {
             let reason = std::error::Error::source(&error).map(ToString::to_string);
@@ -103,7 +103,8 @@ impl Component {
             step_finished: None,
             environment,
         });
-        binary.watch.enter();
+        let function = maker(&binary.functions, kind);
+        binary.watch.enter(function);
         let made = match &binary.functions {
             Functions::V2(f) => instance_2(f, kind, identity, &callbacks),
             Functions::V3(f) => instance_3(f, kind, identity, environment),
@@ -114,15 +115,7 @@ impl Component {
                 let binary = binary.clone();
                 Ok(Component { binary, handle, log, _callbacks: callbacks })
             }
-            Ok(_) => {
-                let function = match kind {
-                    _ if matches!(binary.functions, Functions::V2(_)) => "fmi2Instantiate",
-                    InterfaceKind::ModelExchange => "fmi3InstantiateModelExchange",
-                    InterfaceKind::CoSimulation => "fmi3InstantiateCoSimulation",
-                    InterfaceKind::ScheduledExecution => "fmi3InstantiateScheduledExecution",
-                };
-                Err((CallError { function, severity: Severity::Error }, log.take()))
-            }
+            Ok(_) => Err((CallError { function, severity: Severity::NoInstance }, log.take())),
             Err(error) => Err((error, log.take())),
         }
     }
@@ -150,16 +143,26 @@ impl Component {
 
 impl Drop for Component {
     fn drop(&mut self) {
-        let free = match &self.binary.functions {
-            Functions::V2(f) => f.free_instance.pointer,
-            Functions::V3(f) => f.free_instance.pointer,
+        let (name, free) = match &self.binary.functions {
+            Functions::V2(f) => (f.free_instance.name, f.free_instance.pointer),
+            Functions::V3(f) => (f.free_instance.name, f.free_instance.pointer),
         };
         if let Some(free) = free {
-            self.binary.watch.enter();
+            self.binary.watch.enter(name);
             // SAFETY: the instance lives, and nothing uses it afterwards.
             unsafe { free(self.handle) };
             self.binary.watch.leave();
         }
+    }
+}
+
+/// The function that makes instances of a kind.
+fn maker(functions: &Functions, kind: InterfaceKind) -> &'static str {
+    match (functions, kind) {
+        (Functions::V2(f), _) => f.instantiate.name,
+        (Functions::V3(f), InterfaceKind::ModelExchange) => f.instantiate_exchange.name,
+        (Functions::V3(f), InterfaceKind::CoSimulation) => f.instantiate_simulation.name,
+        (Functions::V3(f), InterfaceKind::ScheduledExecution) => f.instantiate_scheduled.name,
     }
 }
 

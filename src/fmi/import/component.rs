@@ -7,8 +7,11 @@ use super::binary::{Component, Functions, text};
 use super::calls::{CallError, Severity};
 use super::functions::{EventInfo2, Status};
 use crate::description::Kind;
+use crate::sim::same_time;
 use std::ffi::{CString, c_char, c_int};
 
+/// The order of the derivatives of inputs.
+static FIRST_ORDER: c_int = 1;
 /// Most rounds of discrete states at one event.
 const MOST_ROUNDS: u32 = 1000;
 
@@ -40,7 +43,7 @@ macro_rules! call {
         match function.pointer {
             None => Err(CallError { function: function.name, severity: Severity::Missing }),
             Some(pointer) => {
-                $self.watch().enter();
+                $self.watch().enter(function.name);
                 // SAFETY: the function has this type by the standard, the handle is that of a living
                 // instance, and pointers lead to as many values as are said beside them.
                 let status = unsafe { pointer($self.handle() $(, $argument)*) };
@@ -78,6 +81,15 @@ fn judge(function: &'static str, status: Status) -> Result<(), CallError> {
         _ => Severity::Fatal,
     };
     Err(CallError { function, severity })
+}
+
+/// The time at which a step has ended, if it lies within the step.
+fn within(function: &'static str, reached: f64, step: (f64, f64)) -> Result<f64, CallError> {
+    let (from, to) = step;
+    match (from..=to).contains(&reached) || same_time(reached, from) || same_time(reached, to) {
+        true => Ok(reached.clamp(from, to)),
+        false => Err(CallError { function, severity: Severity::Outside { reached, step } }),
+    }
 }
 
 /// Initialization and modes.
@@ -319,6 +331,13 @@ impl Component {
 
 /// Co-simulation.
 impl Component {
+    /// Sets how fast an input changes during the next step (FMI 2.0, where it is Real).
+    pub fn set_input_derivative(&self, reference: u32, derivative: f64) -> Result<(), CallError> {
+        let Functions::V2(f) = self.functions() else { return Ok(()) };
+        let (reference, order) = (&raw const reference, &raw const FIRST_ORDER);
+        call!(self, f.set_input_derivatives, reference, 1, order, &raw const derivative)
+    }
+
     /// Makes a step.
     pub fn step(&self, time: f64, length: f64) -> Result<StepEnd, CallError> {
         match self.functions() {
@@ -327,7 +346,8 @@ impl Component {
                 match call!(self, f.do_step, time, length, 1) {
                     Ok(()) => Ok(whole),
                     Err(error) => match self.terminated() {
-                        Some(time) if error.severity == Severity::Discard => {
+                        Some(reached) if error.severity == Severity::Discard => {
+                            let time = within(f.real_status.name, reached, (time, whole.time))?;
                             Ok(StepEnd { time, terminates: true, ..whole })
                         }
                         _ => Err(error),
@@ -349,7 +369,10 @@ impl Component {
                     &mut reached
                 )?;
                 let [needs_event, terminates, is_early] = flags;
-                let time = if is_early { reached } else { time + length };
+                let time = match is_early || terminates {
+                    true => within(f.do_step.name, reached, (time, time + length))?,
+                    false => time + length,
+                };
                 Ok(StepEnd { time, needs_event, terminates })
             }
         }

@@ -1,8 +1,9 @@
 //! Co-simulation: a unit that integrates itself between communication points (FMI 2.0.5 §4,
 //! FMI 3.0.2 §4).
 //!
-//! Communication points are the output points and the beginnings of the pieces of inputs. A unit with
-//! steps of one length gets those of its experiment. Inputs have one value during a step.
+//! Communication points are the output points and the beginnings of the pieces of inputs, and points between
+//! them where inputs change. A unit with steps of one length gets those of its experiment. What inputs are
+//! during a step, `inputs` says; where values are recorded they are those of this time.
 
 use super::calls::CallError;
 use super::stepped::{Stepped, Stopped};
@@ -11,7 +12,7 @@ use crate::sim::{OutputGrid, Settings, SimErrorKind, Trajectory, same_time};
 
 /// Steps in a row that do not advance.
 const MOST_WITHOUT_PROGRESS: u32 = 1000;
-/// Steps of an experiment that gives no length.
+/// Steps of an experiment that gives no length, and at least where inputs change during steps.
 const STEPS: f64 = 500.0;
 
 /// A simulation.
@@ -61,7 +62,11 @@ impl<'a> CoSimulation<'a> {
         description: &Description,
         has_event_mode: bool,
     ) -> CoSimulation<'a> {
-        let points = Points::of(description, run.settings);
+        let mut points = Points::of(description, run.settings);
+        if run.inputs.are_approximated() {
+            let Settings { start, stop, .. } = run.settings;
+            points.longest = points.longest.min((stop - start) / STEPS);
+        }
         CoSimulation { run, points, has_event_mode, needs_event: false }
     }
 
@@ -88,6 +93,9 @@ impl<'a> CoSimulation<'a> {
             let output = self.run.settings.output.point(start, stop, number);
             let is_point = output.is_some_and(|point| point <= t || same_time(point, t));
             if is_point || records_all {
+                if !ends {
+                    self.run.inputs.set(self.run.component, t, false)?;
+                }
                 self.run.record_as(output.filter(|_| is_point).map_or(t, |at| at.max(t)), out)?;
                 number += usize::from(is_point);
                 if is_point && !records_all {
@@ -118,7 +126,7 @@ impl<'a> CoSimulation<'a> {
         self.run.statistics.steps += 1;
         let mut without_progress = 0;
         while self.run.time < target {
-            if self.prepare(out)? {
+            if self.prepare(target, out)? {
                 return Ok(true);
             }
             let t = self.run.time;
@@ -140,25 +148,29 @@ impl<'a> CoSimulation<'a> {
 
     /// Sets the inputs of the next step, and handles an event where one is needed, with a row before
     /// and one after it; whether the simulation ends.
-    fn prepare(&mut self, out: &mut Trajectory) -> Result<bool, CallError> {
+    fn prepare(&mut self, target: f64, out: &mut Trajectory) -> Result<bool, CallError> {
         let t = self.run.time;
-        let changes = self.run.inputs.begin_piece(t);
-        let is_event = self.has_event_mode && (self.needs_event || changes);
         let component = self.run.component;
-        if !is_event {
-            self.run.inputs.set(component, t, !self.has_event_mode)?;
-            return Ok(false);
-        }
-        self.needs_event = false;
-        self.run.statistics.time_events += 1;
-        if out.time().last() != Some(&t) {
+        let is_new = out.time().last() != Some(&t);
+        if self.has_event_mode && (self.needs_event || self.run.inputs.changes_piece(t)) {
+            self.needs_event = false;
+            self.run.statistics.time_events += 1;
+            if is_new {
+                self.run.inputs.set(component, t, false)?;
+                self.run.record(out)?;
+            }
+            component.enter_event_mode()?;
+            self.run.inputs.seek(t);
+            self.run.inputs.set(component, t, true)?;
+            let update = component.update_discrete_states()?;
+            component.enter_step_mode()?;
             self.run.record(out)?;
+            if update.terminates {
+                return Ok(true);
+            }
         }
-        component.enter_event_mode()?;
-        self.run.inputs.set(component, t, true)?;
-        let update = component.update_discrete_states()?;
-        component.enter_step_mode()?;
-        self.run.record(out)?;
-        Ok(update.terminates)
+        self.run.inputs.seek(t);
+        self.run.inputs.set_step(component, (t, target), !self.has_event_mode)?;
+        Ok(false)
     }
 }

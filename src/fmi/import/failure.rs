@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Why a simulation failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FailureClass {
+    /// The unit makes no instance.
+    Instance,
     /// The unit reports an error.
     Unit,
     /// The solver did not get through.

@@ -109,6 +109,7 @@ table! {
         directional = "fmi2GetDirectionalDerivative" (Handle, *const u32, usize, *const u32, usize, *const f64, *mut f64) -> Status;
         boolean_status = "fmi2GetBooleanStatus" (Handle, c_int, *mut Truth2) -> Status;
         real_status = "fmi2GetRealStatus" (Handle, c_int, *mut f64) -> Status;
+        set_input_derivatives = "fmi2SetRealInputDerivatives" (Handle, *const u32, usize, *const c_int, *const f64) -> Status;
         do_step = "fmi2DoStep" (Handle, f64, f64, Truth2) -> Status;
     }
 }

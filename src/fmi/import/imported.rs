@@ -13,6 +13,8 @@ pub struct Imported {
     pub file: String,
     /// What it says of itself.
     pub description: Description,
+    /// Whether it brings files beside its library.
+    pub has_resources: bool,
     /// Who integrates.
     pub kind: InterfaceKind,
     /// Where it runs.

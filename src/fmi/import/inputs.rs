@@ -1,5 +1,9 @@
-//! Inputs that follow samples. Between two events an input has one piece of its course, also beyond
-//! the ends of the piece, so that steps see no jump.
+//! Inputs that follow samples. Between two events of model exchange an input has one piece of its course,
+//! also beyond the ends of the piece, so that steps see no jump.
+//!
+//! During a step of co-simulation a continuous input has its mean over the step, which makes an error of
+//! second order in its length; or, where the unit takes derivatives of inputs (FMI 2.0), the line with this
+//! mean that begins at its value, which is the input itself between two samples.
 
 use super::binary::Component;
 use super::calls::CallError;
@@ -14,6 +18,8 @@ use std::collections::BTreeMap;
 pub(super) struct Inputs<'a> {
     followed: Vec<Followed<'a>>,
     variables: Vec<InputVariable>,
+    /// Whether the unit is given the derivatives of inputs.
+    has_derivatives: bool,
 }
 
 /// An input with the piece of its samples that holds now.
@@ -25,8 +31,6 @@ struct Followed<'a> {
     piece: Option<usize>,
     /// Its variable among those of the inputs.
     variable: usize,
-    /// Which of the readings it is, where these are of its own value.
-    reading: Option<usize>,
 }
 
 struct InputVariable {
@@ -46,7 +50,12 @@ impl<'a> Inputs<'a> {
         numbers: &[(Place, f64)],
     ) -> Inputs<'a> {
         let mut known: BTreeMap<usize, usize> = BTreeMap::new();
-        let mut inputs = Inputs { followed: Vec::new(), variables: Vec::new() };
+        let interface = description.co_simulation.as_ref();
+        let mut inputs = Inputs {
+            followed: Vec::new(),
+            variables: Vec::new(),
+            has_derivatives: interface.is_some_and(|own| own.can_interpolate_inputs),
+        };
         for samples in all {
             let at = samples.place.variable;
             // Clocks tick; they have no values.
@@ -69,44 +78,26 @@ impl<'a> Inputs<'a> {
                 inputs.variables.len() - 1
             });
             let is_held = samples.is_held || !inputs.variables[variable].is_continuous;
-            let (piece, reading) = (None, None);
-            inputs.followed.push(Followed { samples, is_held, piece, variable, reading });
+            inputs.followed.push(Followed { samples, is_held, piece: None, variable });
         }
         inputs
     }
 
-    /// The same inputs; among readings of these scalars are their own.
-    pub fn read_among(mut self, observed: &[Place]) -> Inputs<'a> {
-        for input in &mut self.followed {
-            input.reading = observed.iter().position(|place| *place == input.samples.place);
-        }
-        self
-    }
-
-    /// Writes the values at `t` to the readings of inputs: within a step of co-simulation the instance
-    /// has those of its beginning.
-    pub fn read(&self, t: f64, readings: &mut [f64]) {
-        for input in &self.followed {
-            if let Some(reading) = input.reading {
-                readings[reading] = input.value(t);
-            }
-        }
+    /// Whether short steps follow the inputs closer than long ones.
+    pub fn are_approximated(&self) -> bool {
+        !self.has_derivatives && self.followed.iter().any(|input| !input.is_held)
     }
 
     /// Chooses the pieces that hold from `t` on.
     pub fn seek(&mut self, t: f64) {
         for input in &mut self.followed {
-            let times = &input.samples.times;
-            let after = times.partition_point(|time| *time <= t || same_time(*time, t));
-            input.piece = after.checked_sub(1);
+            input.piece = input.piece_at(t);
         }
     }
 
-    /// The same; whether other pieces hold than before.
-    pub fn begin_piece(&mut self, t: f64) -> bool {
-        let before: Vec<Option<usize>> = self.followed.iter().map(|input| input.piece).collect();
-        self.seek(t);
-        self.followed.iter().map(|input| input.piece).ne(before)
+    /// Whether other pieces hold from `t` on than until then.
+    pub fn changes_piece(&self, t: f64) -> bool {
+        self.followed.iter().any(|input| input.piece != input.piece_at(t))
     }
 
     /// When the next piece of an input begins.
@@ -124,6 +115,37 @@ impl<'a> Inputs<'a> {
             let variable = &mut self.variables[input.variable];
             variable.values[input.samples.place.element] = input.value(t);
         }
+        self.give(component, is_event)
+    }
+
+    /// Gives the instance the values during a step of co-simulation: of all inputs, or of those that change
+    /// between events.
+    pub fn set_step(
+        &mut self,
+        component: &Component,
+        step: (f64, f64),
+        is_event: bool,
+    ) -> Result<(), CallError> {
+        for input in &self.followed {
+            let variable = &mut self.variables[input.variable];
+            let is_mean = variable.is_continuous && !self.has_derivatives;
+            variable.values[input.samples.place.element] =
+                if is_mean { input.mean(step) } else { input.value(step.0) };
+        }
+        self.give(component, is_event)?;
+        for input in self.followed.iter().filter(|_| self.has_derivatives) {
+            let InputVariable { reference, is_continuous: true, .. } =
+                self.variables[input.variable]
+            else {
+                continue;
+            };
+            let derivative = 2.0 * (input.mean(step) - input.value(step.0)) / (step.1 - step.0);
+            component.set_input_derivative(reference, derivative)?;
+        }
+        Ok(())
+    }
+
+    fn give(&self, component: &Component, is_event: bool) -> Result<(), CallError> {
         let due = self.variables.iter().filter(|variable| is_event || variable.is_continuous);
         for variable in due {
             component.set(variable.kind, &[variable.reference], &variable.values)?;
@@ -133,9 +155,36 @@ impl<'a> Inputs<'a> {
 }
 
 impl Followed<'_> {
+    /// The number of the sample at which the piece begins that holds from `t` on.
+    fn piece_at(&self, t: f64) -> Option<usize> {
+        let times = &self.samples.times;
+        times.partition_point(|time| *time <= t || same_time(*time, t)).checked_sub(1)
+    }
+
+    /// The value at a time, in the piece that holds now.
     fn value(&self, t: f64) -> f64 {
+        self.value_in(self.piece, t)
+    }
+
+    /// The mean over a step that begins in the piece that holds now.
+    fn mean(&self, (from, to): (f64, f64)) -> f64 {
+        let times = &self.samples.times;
+        let (mut piece, mut t, mut area) = (self.piece, from, 0.0);
+        loop {
+            let next = piece.map_or(0, |piece| piece + 1);
+            let end = times.get(next).copied().filter(|end| *end < to);
+            let until = end.unwrap_or(to).max(t);
+            area += (until - t) * (self.value_in(piece, t) + self.value_in(piece, until)) / 2.0;
+            if end.is_none() {
+                return area / (to - from);
+            }
+            (piece, t) = (Some(next), until);
+        }
+    }
+
+    fn value_in(&self, piece: Option<usize>, t: f64) -> f64 {
         let Samples { times, values, .. } = self.samples;
-        let Some(piece) = self.piece else { return values.first().copied().unwrap_or(0.0) };
+        let Some(piece) = piece else { return values.first().copied().unwrap_or(0.0) };
         let begin = values[piece];
         match times.get(piece + 1) {
             Some(end) if !self.is_held && *end > times[piece] => {
@@ -151,19 +200,34 @@ impl Followed<'_> {
 mod tests {
     use super::*;
 
-    fn value(samples: &Samples, seek: f64, t: f64) -> f64 {
+    fn at<'a>(samples: &'a Samples, seek: f64) -> Followed<'a> {
+        let is_held = samples.is_held;
         let mut inputs = Inputs {
-            followed: vec![Followed {
-                samples,
-                is_held: samples.is_held,
-                piece: None,
-                variable: 0,
-                reading: None,
-            }],
+            followed: vec![Followed { samples, is_held, piece: None, variable: 0 }],
             variables: Vec::new(),
+            has_derivatives: false,
         };
         inputs.seek(seek);
-        inputs.followed[0].value(t)
+        inputs.followed.remove(0)
+    }
+
+    fn value(samples: &Samples, seek: f64, t: f64) -> f64 {
+        at(samples, seek).value(t)
+    }
+
+    #[test]
+    fn means_are_those_of_the_whole_course() {
+        let place = Place { variable: 0, element: 0 };
+        let (times, values) = (vec![1.0, 2.0, 2.0, 4.0], vec![10.0, 20.0, 50.0, 70.0]);
+        let samples = Samples { place, times, values, is_held: false };
+        let mean = |samples: &Samples, from: f64, to: f64| at(samples, from).mean((from, to));
+        assert_eq!(mean(&samples, 1.0, 2.0), 15.0);
+        assert_eq!(mean(&samples, 1.5, 1.7), 16.0);
+        // (10 + 15 + 2·60 + 70) / 5: before the first, two lines with a jump, after the last.
+        assert_eq!(mean(&samples, 0.0, 5.0), 43.0);
+        assert_eq!(mean(&samples, 2.0, 3.0), 55.0, "after the jump");
+        let held = Samples { is_held: true, ..samples };
+        assert_eq!(mean(&held, 0.0, 5.0), (10.0 + 10.0 + 2.0 * 50.0 + 70.0) / 5.0);
     }
 
     #[test]

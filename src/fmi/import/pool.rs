@@ -1,5 +1,6 @@
 //! Processes in which a unit runs, as many as simulations run at once. One that ends, by a fault of the
-//! unit or because it was too slow, costs its simulation; the next one gets a new process.
+//! unit or because it was too slow, costs its simulation; the next one gets a new process, unless no
+//! simulation has ever returned.
 
 use super::LogMessage;
 use super::failure::{FailureClass, SimulationFailure};
@@ -9,13 +10,14 @@ use crate::Archive;
 use crate::sim::{PortableSettings, Settings, Statistics, Trajectory};
 use std::collections::BTreeSet;
 use std::fmt;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Who runs units.
 pub trait Host: Send + Sync {
-    /// Whether the user allows to run the unit in a file of this name.
-    fn permits(&self, file: &str) -> bool;
+    /// Whether the user allows to run the unit in this file.
+    fn permits(&self, file: &Path) -> bool;
     /// Unpacks a unit for its processes.
     ///
     /// # Errors
@@ -37,8 +39,8 @@ pub trait Process: Send {
     /// Sends a request.
     ///
     /// # Errors
-    /// How the process ended, in one sentence.
-    fn send(&mut self, request: &Request) -> Result<(), String>;
+    /// How the process ended.
+    fn send(&mut self, request: &Request) -> Result<(), Ended>;
     /// Waits for the answer. Where the flag is set the process is asked to answer with what it has; where
     /// it does not, or so many seconds have passed, it is ended.
     ///
@@ -56,6 +58,8 @@ pub trait Process: Send {
 pub enum Ended {
     /// By itself, in one sentence.
     Itself(String),
+    /// Because a call of the unit did not return, in one sentence.
+    Hung(String),
     /// It was cancelled.
     Cancelled,
     /// It took too long.
@@ -66,10 +70,16 @@ pub enum Ended {
 /// clock between steps is faster.
 const GRACE: f64 = 1.0;
 
+/// After so many simulations whose calls did not return, and none that has ended otherwise, there are no
+/// more: each costs the time that a call may take.
+const MOST_HUNG: usize = 5;
+
 /// Processes of one unit.
 pub struct Pool {
     start: Box<dyn Start>,
     idle: Mutex<Vec<Worker>>,
+    /// How the simulations hung that came before the first one that did not; `None` after that.
+    hung: Mutex<Option<Vec<String>>>,
     messages: Mutex<Vec<LogMessage>>,
     next_plan: AtomicU64,
 }
@@ -103,6 +113,7 @@ impl Pool {
         Pool {
             start,
             idle: Mutex::default(),
+            hung: Mutex::new(Some(Vec::new())),
             messages: Mutex::default(),
             next_plan: AtomicU64::new(0),
         }
@@ -130,16 +141,8 @@ impl Pool {
         out: &mut Trajectory,
     ) -> Result<Statistics, SimulationFailure> {
         out.reset(plan.plan.observed.len());
-        let failure = |ended: Ended| {
-            let (class, message) = match ended {
-                Ended::Itself(message) => (FailureClass::Process, message),
-                Ended::Cancelled => (FailureClass::Cancelled, "it was cancelled".to_owned()),
-                Ended::TooSlow => {
-                    (FailureClass::Time, "it takes more time than allowed".to_owned())
-                }
-            };
-            SimulationFailure::new(settings.start, class, message)
-        };
+        let failure = |ended: Ended| self.failure(settings.start, ended);
+        self.refuse_hopeless().map_err(failure)?;
         let idle = locked(&self.idle).pop();
         let mut worker = match idle {
             Some(worker) => worker,
@@ -150,6 +153,7 @@ impl Pool {
             }
         };
         let answer = worker.simulate((plan, values), settings).map_err(failure)?;
+        *locked(&self.hung) = None;
         // One that was cancelled takes no requests any more.
         if !settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             locked(&self.idle).push(worker);
@@ -157,6 +161,33 @@ impl Pool {
         self.keep(answer.messages);
         out.replace(answer.time, answer.columns);
         answer.result
+    }
+
+    /// Refuses to simulate a unit that has done nothing but hang.
+    fn refuse_hopeless(&self) -> Result<(), Ended> {
+        match &*locked(&self.hung) {
+            Some(all) if all.len() >= MOST_HUNG => Err(Ended::Itself(format!(
+                "{}; after {MOST_HUNG} simulations that ended so, and no other, there are no more",
+                all[0]
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// What the end of a process means for its simulation.
+    fn failure(&self, start: f64, ended: Ended) -> SimulationFailure {
+        let (class, message) = match ended {
+            Ended::Itself(message) => (FailureClass::Process, message),
+            Ended::Hung(message) => {
+                if let Some(all) = &mut *locked(&self.hung) {
+                    all.push(message.clone());
+                }
+                (FailureClass::Process, message)
+            }
+            Ended::Cancelled => (FailureClass::Cancelled, "it was cancelled".to_owned()),
+            Ended::TooSlow => (FailureClass::Time, "it takes more time than allowed".to_owned()),
+        };
+        SimulationFailure::new(start, class, message)
     }
 
     fn keep(&self, messages: Vec<LogMessage>) {
@@ -179,14 +210,14 @@ impl Worker {
     ) -> Result<Answer, Ended> {
         if self.plans.insert(plan.number) {
             let plan = Request::Plan(plan.number, (*plan.plan).clone());
-            self.process.send(&plan).map_err(Ended::Itself)?;
+            self.process.send(&plan)?;
         }
         let request = Request::Simulate {
             plan: plan.number,
             values: values.to_vec(),
             settings: PortableSettings::of(settings),
         };
-        self.process.send(&request).map_err(Ended::Itself)?;
+        self.process.send(&request)?;
         let seconds = settings.time_budget.map(|budget| budget.seconds + GRACE);
         self.process.answer(settings.cancel.as_deref(), seconds)
     }

@@ -70,7 +70,6 @@ impl<'a> Stepped<'a> {
     /// Adds a row with the values now, at a time that differs from the one reached by rounding.
     pub fn record_as(&mut self, time: f64, out: &mut Trajectory) -> Result<(), CallError> {
         self.readings.read(self.component, &mut self.row)?;
-        self.inputs.read(self.time, &mut self.row);
         let last = out.time().last().copied();
         out.push(last.map_or(time, |last| time.max(last)), &self.row);
         if let Some(reached) = &self.settings.reached {

@@ -75,8 +75,9 @@ impl Unit {
             made => made,
         };
         let (component, identity) = made.map_err(|(error, said)| {
+            let message = with_last_problem(error.to_string(), &said);
             messages.extend(said);
-            at_start(error.to_string())
+            SimulationFailure::new(settings.start, FailureClass::Instance, message)
         })?;
         let has_event_mode = identity.has_event_mode;
         *before = None;
@@ -88,14 +89,15 @@ impl Unit {
         let run = Run { component, description, layout: &layout, plan, settings, has_event_mode };
         let ended = run.simulate(values, simulator, out);
         let said = component.messages();
-        let last = said.iter().rfind(|message| message.is_problem).map(|own| own.text.clone());
-        messages.extend(said);
-        ended.map_err(|failure| match (failure.class, last) {
-            (FailureClass::Unit, Some(text)) => {
-                SimulationFailure { message: format!("{}: {text}", failure.message), ..failure }
+        let ended = ended.map_err(|failure| match failure.class {
+            FailureClass::Unit => {
+                let message = with_last_problem(failure.message, &said);
+                SimulationFailure { message, ..failure }
             }
             _ => failure,
-        })
+        });
+        messages.extend(said);
+        ended
     }
 
     fn load(&mut self, kind: InterfaceKind) -> Result<(), String> {
@@ -108,6 +110,14 @@ impl Unit {
                 .map_err(|why| format!("`{path}` cannot be loaded: {why}"))?;
         self.binaries.push((kind, Arc::new(binary)));
         Ok(())
+    }
+}
+
+/// A sentence, followed by the last warning or error that the unit has logged.
+fn with_last_problem(sentence: String, said: &[LogMessage]) -> String {
+    match said.iter().rfind(|message| message.is_problem) {
+        Some(last) => format!("{sentence}: {}", last.text),
+        None => sentence,
     }
 }
 
@@ -170,8 +180,6 @@ impl Run<'_> {
         let parts = (inputs, Readings::new(description, layout, &plan.observed));
         let statistics = match plan.kind {
             InterfaceKind::CoSimulation => {
-                let (inputs, readings) = parts;
-                let parts = (inputs.read_among(&plan.observed), readings);
                 let run = Stepped::new(component, parts, settings);
                 let mut simulation = CoSimulation::new(run, description, *has_event_mode);
                 let ended = simulation.simulate(out);

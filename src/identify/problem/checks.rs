@@ -310,16 +310,21 @@ fn bias(
         p = p.min(signs_two_sided(positive as u64, residuals.len() as u64));
     }
     (p < alpha).then(|| {
-        let unit = if own.has_sigma { "sigma" } else { "their standard deviation" };
-        let size = if own.has_sigma { 1.0 } else { spread.max(f64::MIN_POSITIVE) };
+        let size = match own.has_sigma {
+            true => format!("their mean is {} times sigma", significant(mean, 2)),
+            // Alike but for rounding: their standard deviation is no measure.
+            false if spread <= 1e-9 * mean.abs() => format!("all are {}", significant(mean, 2)),
+            false => {
+                let ratio = significant(mean / spread, 2);
+                format!("their mean is {ratio} times their standard deviation")
+            }
+        };
         Finding::new(
             FindingKind::Bias,
             format!(
-                "The residuals of {} are biased: their mean is {} times {unit} ({} of {} are \
-                 positive). On average, the simulation lies {} the data. Possible causes: a \
+                "The residuals of {} are biased: {size} ({} of {} are positive). On average, the simulation lies {} the data. Possible causes: a \
                  sensor offset, conflicting outputs, or a model that cannot reach the data.",
                 own.label,
-                significant(mean / size, 2),
                 positive,
                 residuals.len(),
                 if mean > 0.0 { "below" } else { "above" },

@@ -73,6 +73,8 @@ struct Stage {
     /// The tolerances of both as they were set.
     tolerances: [f64; 2],
     x_name: String,
+    /// The variables of the observations.
+    y_names: Vec<String>,
     /// For each observation the times, or in X the points.
     points: Vec<Vec<f64>>,
     /// For each observation over time, which of the points are limits at events.
@@ -263,6 +265,7 @@ impl Stage {
             retry,
             settings,
             x_name: x_name.clone(),
+            y_names: observations.iter().map(|o| o.y_name.clone()).collect(),
             points,
             limits,
             in_x,
@@ -314,10 +317,24 @@ impl Stage {
                 .evaluate(instance.as_mut(), at, (column, x), out)
                 .map_err(|cause| Failed::new(FailureKind::Model, cause, 0.0))?;
         }
-        match out.iter().all(|value| value.is_finite()) {
-            true => Ok(()),
-            false => Err(Failed::new(FailureKind::Points, "a simulated value is not finite", 0.0)),
+        self.refuse_not_finite(out).map_err(|failed| Failed { at: None, progress: 0.0, ..failed })
+    }
+
+    /// Refuses points that cannot be compared.
+    fn refuse_not_finite(&self, out: &[f64]) -> Result<(), Failed> {
+        let mut rest = out;
+        for (name, points) in self.y_names.iter().zip(&self.points) {
+            let (own, others) = rest.split_at(points.len().min(rest.len()));
+            rest = others;
+            if let Some(at) = own.iter().position(|value| !value.is_finite()) {
+                let cause = format!("`{name}` is {}", own[at]);
+                return Err(match self.in_x {
+                    true => missing(&format!("{cause} at `{}` = {}", self.x_name, points[at])),
+                    false => Failed { at: Some(points[at]), ..missing(&cause) },
+                });
+            }
         }
+        Ok(())
     }
 
     /// Simulates with derivatives for all parameters of the problem; `Err` within `Ok` says why there
@@ -420,7 +437,7 @@ impl Stage {
                         true => self.derivative_in_x(trajectory, column, *point, of),
                         false => self.at(trajectory, [column, of(column)], (number, *point)),
                     }
-                    .ok_or_else(|| missing("the simulation ended early"))?;
+                    .ok_or_else(|| ended_early(trajectory))?;
                 }
             }
         }
@@ -504,15 +521,17 @@ impl Stage {
             } else {
                 for (value, (number, &time)) in out.iter_mut().zip(points.iter().enumerate()) {
                     let found = self.at(trajectory, [column, column], (number, time));
-                    *value = found.ok_or_else(|| missing("the simulation ended early"))?;
+                    *value = found.ok_or_else(|| ended_early(trajectory))?;
                 }
             }
         }
-        match out.iter().all(|value| value.is_finite()) {
-            true => Ok(()),
-            false => Err(missing("a simulated value is not finite")),
-        }
+        self.refuse_not_finite(out)
     }
+}
+
+/// The model has ended the simulation before the last point.
+fn ended_early(trajectory: &Trajectory) -> Failed {
+    Failed { at: trajectory.time().last().copied(), ..missing("the model ended the simulation") }
 }
 
 /// The points could not be read.

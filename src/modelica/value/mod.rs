@@ -84,6 +84,8 @@ pub struct EnumerationDefinition {
     pub name: Name,
     /// Its literals in order.
     pub literals: Vec<Ident>,
+    /// Their description strings, empty where they have none; none at all where no class declares them.
+    pub descriptions: Vec<String>,
 }
 
 impl PartialEq for EnumerationDefinition {

@@ -1,6 +1,7 @@
 //! What a file holds.
 
 use super::errors::{BAD_MAT_FILE, UNKNOWN_MATRIX, UNREADABLE_MATRIX};
+use super::words::Words;
 use crate::diag::{Fault, suggest};
 use crate::{bail, fault};
 use indexmap::IndexMap;
@@ -224,7 +225,9 @@ pub struct MatFile {
     failed: IndexMap<String, Fault>,
     about: IndexMap<String, About>,
     /// Rows of the file before the first one here, see [`MatFile::rows`].
-    rows_before: usize,
+    pub(super) rows_before: usize,
+    /// Columns that are not all numbers.
+    pub(super) words: IndexMap<String, Words>,
     /// Names of columns without their units, with the columns that they may mean.
     aliases: IndexMap<String, Vec<String>>,
 }
@@ -239,6 +242,7 @@ impl MatFile {
             failed: IndexMap::new(),
             about: IndexMap::new(),
             rows_before: 0,
+            words: IndexMap::new(),
             aliases: IndexMap::new(),
         }
     }
@@ -335,6 +339,9 @@ impl MatFile {
                 about.lines = about.lines[rows.clone()].into();
             }
         }
+        for words in part.words.values_mut().filter(|words| words.cells.len() == count) {
+            *words = words.rows(rows.clone());
+        }
         part.rows_before += rows.start;
         part
     }
@@ -370,7 +377,7 @@ impl MatFile {
     }
 
     /// The fault with the name of the file.
-    fn located(&self, mut fault: Fault) -> Fault {
+    pub(super) fn located(&self, mut fault: Fault) -> Fault {
         if !self.file_name.is_empty() {
             fault.message = format!("`{}`: {}", self.file_name, fault.message);
         }
@@ -378,7 +385,7 @@ impl MatFile {
     }
 
     /// The name as the file has it.
-    fn own_name<'n>(&'n self, name: &'n str) -> Result<&'n str, Fault> {
+    pub(super) fn own_name<'n>(&'n self, name: &'n str) -> Result<&'n str, Fault> {
         if self.arrays.contains_key(name) || self.failed.contains_key(name) {
             return Ok(name);
         }
@@ -534,7 +541,7 @@ fn part(name: &str) -> Option<(&str, Part)> {
 }
 
 /// The sentence about values that are missing.
-fn missing(name: &str, values: &[f64], rows_before: usize) -> Option<String> {
+pub(super) fn missing(name: &str, values: &[f64], rows_before: usize) -> Option<String> {
     const SHOWN: usize = 10;
     let rows: Vec<usize> = (0..values.len()).filter(|&k| !values[k].is_finite()).collect();
     if rows.is_empty() {

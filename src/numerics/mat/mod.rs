@@ -21,6 +21,7 @@ mod archive;
 mod calendar;
 pub mod errors;
 mod matrix;
+mod named_values;
 mod number;
 mod reader;
 #[cfg(feature = "xlsx")]
@@ -34,6 +35,7 @@ mod v4;
 mod v5;
 #[cfg(feature = "hdf5")]
 mod v73;
+mod words;
 mod write;
 
 pub use calendar::{Calendar, calendar};

@@ -902,7 +902,7 @@ impl Run<'_> {
     }
 
     /// Checks the end of a step that began at `begin`. An assertion that has failed within the step
-    /// fails at the time when it began to.
+    /// fails at the time when it began to, and there are no rows after that.
     pub(crate) fn check_step(&mut self, begin: f64) -> Result<(), SimErrorKind> {
         let Err(mut failed) = self.check() else { return Ok(()) };
         let is_assertion = |kind: &SimErrorKind| {
@@ -920,6 +920,7 @@ impl Run<'_> {
                 _ => holds = middle,
             }
         }
+        self.out.end_at(self.t);
         Err(failed)
     }
 

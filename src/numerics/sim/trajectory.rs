@@ -38,6 +38,13 @@ impl Trajectory {
         }
     }
 
+    /// Removes the rows after a time.
+    pub fn end_at(&mut self, time: f64) {
+        let rows = self.time.partition_point(|row| *row <= time);
+        self.time.truncate(rows);
+        self.columns.iter_mut().for_each(|column| column.truncate(rows));
+    }
+
     /// Puts rows in the place of all there are.
     ///
     /// # Panics

@@ -69,6 +69,8 @@ pub enum Grant<'a> {
     WriteAll,
     /// To compile and call functions in C of a library, or of all.
     ExternalCode(Option<&'a str>),
+    /// To run this functional mock-up unit.
+    ExternalFile(&'a Path),
     /// Functions in C are not called, even if they are allowed: the models are only checked.
     CheckOnly,
 }
@@ -84,7 +86,8 @@ impl<'a> Grant<'a> {
             | Grant::Replace(path)
             | Grant::Own(path)
             | Grant::Named(path)
-            | Grant::Deny(path) => Some(path),
+            | Grant::Deny(path)
+            | Grant::ExternalFile(path) => Some(path),
             Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode(_) | Grant::CheckOnly => None,
         }
     }
@@ -101,6 +104,7 @@ impl<'a> Grant<'a> {
             Grant::Own(_) => Grant::Own(path),
             Grant::Named(_) => Grant::Named(path),
             Grant::Deny(_) => Grant::Deny(path),
+            Grant::ExternalFile(_) => Grant::ExternalFile(path),
             Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode(_) | Grant::CheckOnly => self,
         }
     }
@@ -253,6 +257,8 @@ pub struct Policy {
 pub struct ExternalCode {
     /// Those of these libraries.
     libraries: BTreeSet<String>,
+    /// The functional mock-up units in these files.
+    files: BTreeSet<PathBuf>,
     /// Those of all.
     all: bool,
     /// Whether they are only checked.
@@ -262,10 +268,12 @@ pub struct ExternalCode {
 impl ExternalCode {
     /// The libraries, for people.
     pub fn listed(&self) -> String {
-        match (self.all, self.libraries.is_empty()) {
+        let files = self.files.iter().map(|file| file.display().to_string());
+        let named: Vec<String> = self.libraries.iter().cloned().chain(files).collect();
+        match (self.all, named.is_empty()) {
             (true, _) => "of all libraries".to_owned(),
             (false, true) => "none".to_owned(),
-            _ => self.libraries.iter().cloned().collect::<Vec<_>>().join(", "),
+            _ => named.join(", "),
         }
     }
 
@@ -274,9 +282,12 @@ impl ExternalCode {
         self.all || !self.libraries.is_empty()
     }
 
-    /// Whether the functional mock-up unit in a file of this name is allowed.
-    pub fn permits_file(&self, file: &str) -> bool {
-        self.all || self.libraries.contains(file)
+    /// Whether the functional mock-up unit in the file with this real path is allowed: itself, or all files of
+    /// its name.
+    pub fn permits_file(&self, real: &Path) -> bool {
+        let name = real.file_name().and_then(|name| name.to_str());
+        let is_named = name.is_some_and(|name| self.libraries.contains(name));
+        self.all || is_named || self.files.contains(real)
     }
 
     /// Whether those of the library with this class are allowed.
@@ -302,6 +313,7 @@ impl Policy {
             Grant::ExternalCode(Some(library)) => {
                 self.external_code.libraries.insert(library.to_owned());
             }
+            Grant::ExternalFile(_) => drop(self.external_code.files.insert(real)),
             Grant::ExternalCode(None) => self.external_code.all = true,
             Grant::CheckOnly => self.external_code.is_only_checked = true,
         }

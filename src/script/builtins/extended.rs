@@ -1,7 +1,9 @@
 //! Simulations with given values that return values: once, or once for each row of values.
 
 use super::linearization::write_dslin;
-use super::simulation::{Request, Simulable, is_model, result_path, to_simulate};
+use super::simulation::{
+    Request, Simulable, is_model, result_path, simulation_header, to_simulate,
+};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
@@ -26,30 +28,14 @@ pub(super) const FAMILY: Family = Family {
 /// What stands among the initial names where the models are linearized too.
 pub(super) const LINEARIZE: &str = "linearize:";
 
-/// A header whose inputs begin with those of `simulateModel`.
+/// A header whose inputs begin with those of `simulateModel` and `initialNames`.
 macro_rules! header {
     ($name:literal, $description:literal, $rest:literal) => {
-        concat!(
-            "function ",
+        simulation_header!(
             $name,
-            " \"",
             $description,
-            "\"\n",
-            r#"  input String problem = "" "Class or Class(modification); empty: the model used last";
-  input Real startTime = 0.0 "s" annotation(optional = true);
-  input Real stopTime = 1.0 "s" annotation(optional = true);
-  input Integer numberOfIntervals = 500 annotation(optional = true);
-  input Real outputInterval = 0.0 "s; used if numberOfIntervals is 0 or not given" annotation(optional = true);
-  input String method = "Dassl" annotation(optional = true);
-  input Real tolerance = 0.0001 "relative" annotation(optional = true);
-  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
-  input String resultFile = "dsres" ".mat is added if the name has no extension";
-  input String initialNames[:] = fill("", 0) "parameters, and states or variables with a start value; linearize: for the number of a file dslin<number>.mat";
-"#,
-            $rest,
-            "end ",
-            $name,
-            ";\n"
+            "  input String initialNames[:] = fill(\"\", 0) \"parameters, and states or variables with a start value; linearize: for the number of a file dslin<number>.mat\";\n",
+            $rest
         )
     };
 }

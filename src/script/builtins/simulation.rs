@@ -129,9 +129,16 @@ fn grid(experiment: &flatten::Experiment, options: &SimulationOptions) -> Result
     Ok((0..).map_while(point).collect())
 }
 
-const SIMULATE_MODEL: &str = r#"
-function simulateModel "Simulates a model, after translation if necessary. Defaults come from the model's experiment annotation."
-  input String problem = "" "Class or Class(modification); empty: the model used last";
+/// A header whose inputs begin with those of `simulateModel`.
+macro_rules! simulation_header {
+    ($name:literal, $description:literal, $($rest:literal),+) => {
+        concat!(
+            "function ",
+            $name,
+            " \"",
+            $description,
+            "\"\n",
+            r#"  input String problem = "" "Class or Class(modification); empty: the model used last";
   input Real startTime = 0.0 "s" annotation(optional = true);
   input Real stopTime = 1.0 "s" annotation(optional = true);
   input Integer numberOfIntervals = 500 annotation(optional = true);
@@ -140,9 +147,21 @@ function simulateModel "Simulates a model, after translation if necessary. Defau
   input Real tolerance = 0.0001 "relative" annotation(optional = true);
   input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
   input String resultFile = "dsres" ".mat is added if the name has no extension";
-  output Boolean ok;
-end simulateModel;
-"#;
+"#,
+            $($rest,)+
+            "end ",
+            $name,
+            ";\n"
+        )
+    };
+}
+pub(super) use simulation_header;
+
+const SIMULATE_MODEL: &str = simulation_header!(
+    "simulateModel",
+    "Simulates a model, after translation if necessary. Defaults come from the model's experiment annotation.",
+    "  output Boolean ok;\n"
+);
 
 fn simulate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let request = Request::take(session, &mut args)?;

@@ -100,6 +100,7 @@ static COMPARE_TYPE: LazyLock<Arc<EnumerationDefinition>> = LazyLock::new(|| {
     Arc::new(EnumerationDefinition {
         name: Name::parse("Modelica.Utilities.Types.Compare"),
         literals: ["Less", "Equal", "Greater"].map(Ident::new).to_vec(),
+        descriptions: Vec::new(),
     })
 });
 

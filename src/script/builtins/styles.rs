@@ -51,6 +51,7 @@ pub(super) fn literal(name: &Name) -> Option<Value> {
     let literal = name.last()?;
     let at = literals.iter().position(|known| literal == **known)?;
     let literals = literals.iter().map(|literal| Ident::new(literal)).collect();
-    let definition = Arc::new(EnumerationDefinition { name: Name::parse(style), literals });
+    let (name, descriptions) = (Name::parse(style), Vec::new());
+    let definition = Arc::new(EnumerationDefinition { name, literals, descriptions });
     Some(Value::Enumeration(EnumerationValue { definition, ordinal: at as i64 + 1 }))
 }

@@ -10,6 +10,7 @@ use super::simulation::{self, Translated};
 use crate::Session;
 use crate::causalize;
 use crate::codegen::Program;
+use crate::codegen::errors::STRUCTURAL_PARAMETER;
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::errors::FILE_ERROR;
 use crate::fault;
@@ -48,6 +49,8 @@ struct Made {
     strings: BTreeMap<String, Text>,
     /// Strings that are not in the unit.
     left_out: Vec<String>,
+    /// Structural parameters, and those with `Evaluate = true`, that are neither final nor protected.
+    evaluated: Vec<String>,
     description: Option<String>,
 }
 
@@ -86,14 +89,32 @@ pub fn unit(session: &mut Session, problem: &str, form: Form<'_>) -> Result<Unit
         of_program(session, (problem, &model), &made, form).at(at).map_err(|error| vec![error])
     });
     session.restore_values(before);
-    if unit.is_ok() && !made.left_out.is_empty() {
-        let names: Vec<&str> = made.left_out.iter().map(String::as_str).collect();
-        let names = suggest::listed(&names);
+    if unit.is_ok() {
+        note_losses(session, &made);
+    }
+    unit
+}
+
+/// Notes what a user of the model could set and a user of its unit cannot.
+fn note_losses(session: &mut Session, made: &Made) {
+    let listed = |names: &[String]| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        suggest::listed(&names)
+    };
+    if !made.left_out.is_empty() {
+        let names = listed(&made.left_out);
         let message =
             format!("the unit has no {names}: Strings are in it where they are written as a text");
         session.note(NOT_SUPPORTED, message);
     }
-    unit
+    if !made.evaluated.is_empty() {
+        let names = listed(&made.evaluated);
+        let message = format!(
+            "constant in the unit are {names}: they are structural or have `Evaluate=true`; for other \
+             values, modify the model and export it again"
+        );
+        session.note(STRUCTURAL_PARAMETER, message);
+    }
 }
 
 /// The archive of the unit of a model, as scripts have changed it.
@@ -213,11 +234,19 @@ fn prepared(
             (false, _) if variable.variability > Variability::Parameter => {
                 start_parameter(&mut flat, variable, made);
             }
+            (false, _) if is_evaluated(variable) => made.evaluated.push(variable.name.to_string()),
             (false, _) => {}
         }
     }
     let program = Program::compile(causalize::causalize(&flat)?)?;
     Ok(Translated::new(&model.problem, flat, program))
+}
+
+/// Whether a parameter that a user could set is evaluated when the model is compiled.
+fn is_evaluated(variable: &Variable) -> bool {
+    let is_settable = !variable.is_final && !variable.protected;
+    let is_parameter = variable.variability == Variability::Parameter;
+    is_parameter && is_settable && (variable.evaluate || variable.structural)
 }
 
 /// A String, which is a constant where it is written as a text.

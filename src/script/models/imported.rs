@@ -7,7 +7,7 @@ use crate::diag::{At, Fault, suggest};
 use crate::errors::{BAD_FMU, FMU_MESSAGE, INTERRUPTED};
 use crate::external::errors::EXTERNAL_REFUSED;
 use crate::fmi::archive::{DESCRIPTION, is_unit};
-use crate::fmi::description::{self, Causality, Description, Kind, Variable};
+use crate::fmi::description::{self, Causality, Description, Kind, Variable, Version};
 use crate::fmi::import::{
     FailureClass, Imported, InterfaceKind, Layout, LogMessage, Place, Pool, Samples, Scalar,
     SimulationFailure, is_parameter, is_recorded, library_path, refusal, sources, unusable,
@@ -16,7 +16,7 @@ use crate::fmi::import::{
 use crate::fmi::{Archive, FmuError};
 use crate::identify::{ImportedModel, Model as _};
 use crate::results::{ResultTable, Series, Values};
-use crate::sim::Trajectory;
+use crate::sim::{Settings, Trajectory, same_time};
 use crate::{bail, fault};
 use std::io::Cursor;
 use std::path::Path;
@@ -148,20 +148,23 @@ pub fn import(
     let file = read(session, path)?;
     let kind = kind(&file, method)?;
     let UnitFile { name, archive, description } = file;
+    let has_resources = archive.files().any(|(path, _)| path.starts_with("resources/"));
     let Some(host) = session.world.fmu_host() else {
         bail!(BAD_FMU, "`{name}` cannot run here: FMUs need processes of their own";
             help: "use the program `gapi`")
     };
-    if !host.permits(&name) {
+    if !host.permits(&session.world.absolute(path)) {
+        let shown = path.display();
         bail!(
             EXTERNAL_REFUSED,
             "`{name}` brings binary code, which is not run without permission";
-            help: "if you trust it, allow it with `--allow-external={name}`: the code can do whatever \
+            help: "if you trust it, allow it with `--allow-external={shown}`: the code can do whatever \
                    you can do on this machine"
         );
     }
     let start = host.install(&archive).map_err(|why| fault!(BAD_FMU, "`{name}`: {why}"))?;
-    Ok(Arc::new(Imported { file: name, description, kind, pool: Pool::new(start) }))
+    let pool = Pool::new(start);
+    Ok(Arc::new(Imported { file: name, description, has_resources, kind, pool }))
 }
 
 /// Values in place of start values.
@@ -278,21 +281,10 @@ fn range<'u>(unit: &'u Imported, variable: &Variable) -> Range<'u> {
     }
 }
 
-/// Refuses samples of an input that are the numbers of no literal of its enumeration.
-///
-/// # Errors
-///
-/// The first such number.
-pub(crate) fn check_samples(
-    unit: &Imported,
-    name: &str,
-    place: Place,
-    mut values: impl Iterator<Item = f64>,
-) -> Result<(), Fault> {
-    let limits = [f64::NEG_INFINITY, f64::INFINITY];
-    let range = Range { limits, ..range(unit, unit.variable(place)) };
-    let subject = format!("the input `{name}` of `{}`", unit.file);
-    values.try_for_each(|value| range.check(&subject, value))
+/// The literals of the enumeration of a variable with their numbers; none for other types.
+pub(crate) fn literals(unit: &Imported, variable: &Variable) -> Vec<(f64, String)> {
+    let items = unit.description.type_of(variable).map_or(&[][..], |own| &own.items[..]);
+    items.iter().map(|item| (item.value as f64, item.name.clone())).collect()
 }
 
 fn refuse_unless_settable(unit: &Imported, name: &str, variable: usize) -> Result<(), Fault> {
@@ -363,8 +355,12 @@ pub fn simulate(
         Some(why) if out.is_empty() => return Err(Unfinished::from(why)),
         why => why,
     };
-    note_other_starts(session, model, (&kept, &out));
+    if let Some(sentence) = different_starts(model, (&kept, &out)) {
+        session.note(FMU_MESSAGE, sentence);
+    }
     let table = result_table(model, (&structural, &kept), out);
+    let stop = if why.is_none() { settings.stop } else { f64::NEG_INFINITY };
+    note_ends(session, (&unit, stop), &table);
     let simulated = Simulated { table, statistics, hardest: None };
     match why {
         None => Ok(simulated),
@@ -380,28 +376,100 @@ fn why(session: &Session, unit: &Imported, failure: SimulationFailure) -> Fault 
     }
     let at = match class {
         // Where it was then is not known.
-        FailureClass::Process => String::new(),
+        FailureClass::Process | FailureClass::Instance => String::new(),
         _ => format!(" at {time} s"),
     };
-    fault!(BAD_FMU, "the simulation of `{}` failed{at}: {message}", unit.file)
+    let fault = fault!(BAD_FMU, "the simulation of `{}` failed{at}: {message}", unit.file);
+    let is_refused = class == FailureClass::Instance;
+    fault.help_if(is_refused.then(|| no_instance(unit)))
 }
 
-/// How many parameters a note names.
+/// What can be done where a unit makes no instance.
+fn no_instance(unit: &Imported) -> String {
+    let Description { token, version, .. } = &unit.description;
+    let attribute = match version {
+        Version::V2 => "guid",
+        Version::V3 => "instantiationToken",
+    };
+    let missing = match unit.has_resources {
+        true => "",
+        false => "; it has no folder `resources`, which its library may need",
+    };
+    format!(
+        "its library may be of another export than its `modelDescription.xml`, which has the \
+         {attribute} `{token}`{missing}; export the FMU again, and do not pack its parts by hand"
+    )
+}
+
+/// Notes where a unit has ended its simulation early, and values that are not finite.
+fn note_ends(session: &mut Session, (unit, stop): (&Imported, f64), table: &ResultTable) {
+    let file = &unit.file;
+    if let Some(last) = table.time.last().filter(|last| **last < stop && !same_time(**last, stop)) {
+        let sentence = format!("`{file}` ended the simulation at {last} s, before {stop} s");
+        session.note(FMU_MESSAGE, sentence);
+    }
+    let mut found: Vec<String> = table
+        .series
+        .iter()
+        .filter_map(|series| {
+            let Values::Trajectory(values) = &series.values else { return None };
+            let at = values.iter().position(|value| !value.is_finite())?;
+            Some(format!("`{}` is {} from {} s on", series.name, values[at], table.time[at]))
+        })
+        .collect();
+    if !found.is_empty() {
+        let more = and_more(&mut found);
+        let sentence = format!("`{file}` gives no numbers: {}{more}", found.join(", "));
+        session.note(FMU_MESSAGE, sentence);
+    }
+}
+
+/// Keeps the first of several, and says how many more there are.
+fn and_more(all: &mut Vec<String>) -> String {
+    let more = all.len().saturating_sub(MOST_NAMED);
+    all.truncate(MOST_NAMED);
+    if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
+/// How many variables a note names.
 const MOST_NAMED: usize = 3;
 /// Relative difference of values that are the same but for the digits of a description, or for those of
 /// single precision, of which there are seven.
 const WRITTEN: f64 = 1e-6;
 
-/// Notes parameters that a unit starts with other values than its description says.
-fn note_other_starts(
-    session: &mut Session,
+/// The parameters that a unit starts with other values than its description says, in a sentence. A
+/// simulation without steps tells.
+///
+/// # Errors
+/// Variables that the unit does not have.
+pub(crate) fn other_starts(
+    model: &ImportedModel,
+    free: &[String],
+) -> Result<Option<String>, Fault> {
+    let unit = model.unit_of();
+    let is_set = |scalar: &&Scalar| {
+        let variable = unit.variable(scalar.place);
+        variable.causality == Causality::Parameter && !free.contains(&scalar.name)
+    };
+    let scalars: Vec<&Scalar> = model.layout().scalars().iter().filter(is_set).collect();
+    let names: Vec<String> = scalars.iter().map(|scalar| scalar.name.clone()).collect();
+    let plan = model.planned(&[], &names)?;
+    let settings = Settings { max_total_steps: 0, ..model.settings() };
+    let mut out = Trajectory::default();
+    // It fails for the lack of steps, after its first row.
+    let _ = unit.pool.simulate((&plan, &[]), &settings, &mut out);
+    Ok(different_starts(model, (&scalars, &out)))
+}
+
+/// The same of a simulation.
+fn different_starts(
     model: &ImportedModel,
     (scalars, out): (&[&Scalar], &Trajectory),
-) {
+) -> Option<String> {
     let unit = model.unit_of();
     let mut others = Vec::new();
     for (column, scalar) in scalars.iter().enumerate() {
-        let Some(&own) = out.column(column).first() else { continue };
+        let own = *out.column(column).first()?;
         let said = model.start(scalar.place);
         let has_start = !unit.variable(scalar.place).start.is_empty();
         let agrees = own == said || (own - said).abs() <= WRITTEN * own.abs().max(said.abs());
@@ -409,20 +477,15 @@ fn note_other_starts(
             others.push(format!("{} = {own} in the place of {said}", scalar.name));
         }
     }
-    if let [_, ..] = others.as_slice() {
-        let more = others.len().saturating_sub(MOST_NAMED);
-        others.truncate(MOST_NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        session.note(
-            FMU_MESSAGE,
-            format!(
-                "`{}` computes with other values than its description says: {}{more}; set those \
-                 that you mean",
-                unit.file,
-                others.join(", ")
-            ),
-        );
+    if others.is_empty() {
+        return None;
     }
+    let more = and_more(&mut others);
+    Some(format!(
+        "`{}` computes with other values than its description says: {}{more}; set those that you mean",
+        unit.file,
+        others.join(", ")
+    ))
 }
 
 /// The results of structural parameters, and of what was recorded in this order; parameters are constant.

@@ -25,7 +25,7 @@ pub mod modification;
 pub mod parameter_sets;
 mod parameters;
 mod places;
-mod ranges;
+pub(crate) mod ranges;
 mod reading;
 mod resources;
 mod restart;

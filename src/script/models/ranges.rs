@@ -5,7 +5,7 @@ use crate::diag::Fault;
 use crate::errors::BAD_PARAMETER_VALUE;
 
 /// What a variable takes.
-pub(super) struct Range<'l> {
+pub(crate) struct Range<'l> {
     /// Smallest and largest value; infinite without.
     pub limits: [f64; 2],
     /// The literals of an enumeration with their numbers; none for other types.
@@ -17,7 +17,7 @@ impl Range<'_> {
     ///
     /// # Errors
     /// Values that are not finite, outside the limits, or the number of no literal.
-    pub(super) fn check(&self, subject: &str, value: f64) -> Result<(), Fault> {
+    pub(crate) fn check(&self, subject: &str, value: f64) -> Result<(), Fault> {
         let [min, max] = self.limits;
         if !value.is_finite() {
             bail!(BAD_PARAMETER_VALUE, "{subject} cannot be {value}"; help: "use a finite number");

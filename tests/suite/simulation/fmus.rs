@@ -20,6 +20,9 @@ const LEAVE: u32 = 5;
 const PRINT: u32 = 6;
 const NOT_A_NUMBER: u32 = 7;
 const WRITE: u32 = 8;
+const NO_OUTPUT: u32 = 9;
+const END: u32 = 10;
+const AWAY: u32 = 11;
 
 /// The folder of binaries for this machine, by version.
 pub(super) fn platform(version: u8) -> Option<&'static str> {
@@ -76,10 +79,12 @@ const DESCRIPTION_3: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
     </Float64>
     <String name="label" valueReference="13" causality="parameter" variability="fixed"><Start value=""/></String>
     <Boolean name="gain_on" valueReference="14" causality="parameter" variability="fixed" start="true"/>
+    <Float64 name="w" valueReference="15" causality="output" variability="continuous"/>
   </ModelVariables>
   <ModelStructure>
     <Output valueReference="6"/>
     <Output valueReference="9"/>
+    <Output valueReference="15"/>
     <ContinuousStateDerivative valueReference="3" dependencies="2 5"/>
     <EventIndicator valueReference="2"/>
   </ModelStructure>
@@ -105,9 +110,10 @@ const DESCRIPTION_2: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
     <ScalarVariable name="fault" valueReference="10" causality="parameter" variability="fixed"><Integer start="0"/></ScalarVariable>
     <ScalarVariable name="label" valueReference="13" causality="parameter" variability="fixed"><String start=""/></ScalarVariable>
     <ScalarVariable name="gain_on" valueReference="14" causality="parameter" variability="fixed"><Boolean start="true"/></ScalarVariable>
+    <ScalarVariable name="w" valueReference="15" causality="output"><Real/></ScalarVariable>
   </ModelVariables>
   <ModelStructure>
-    <Outputs><Unknown index="6"/><Unknown index="9"/></Outputs>
+    <Outputs><Unknown index="6"/><Unknown index="9"/><Unknown index="13"/></Outputs>
     <Derivatives><Unknown index="3" dependencies="2 5"/></Derivatives>
   </ModelStructure>
 </fmiModelDescription>
@@ -125,11 +131,15 @@ fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
 
 /// A folder with `unit.fmu`.
 fn with_unit(version: u8) -> Option<TempDir> {
+    with_description(version, description(version))
+}
+
+/// The same with another description.
+fn with_description(version: u8, description: &str) -> Option<TempDir> {
     let here = folder(&[]);
     let library = library(version, here.path())?;
     let path = format!("binaries/{}/unit.so", platform(version)?);
-    let description = description(version).as_bytes();
-    let bytes = archive(&[("modelDescription.xml", description), (&path, &library)]);
+    let bytes = archive(&[("modelDescription.xml", description.as_bytes()), (&path, &library)]);
     fs::write(here.path().join("unit.fmu"), bytes).expect("written");
     Some(here)
 }
@@ -254,9 +264,6 @@ fn units_with_sources_alone_are_compiled() {
 /// the data trigger, and those that the unit asks for.
 #[test]
 fn parts_of_a_unit_run_at_the_ticks_of_clocks() {
-    let here = folder(&[]);
-    let Some(library) = library(3, here.path()) else { return };
-    let path = format!("binaries/{}/unit.so", platform(3).expect("a platform"));
     let exchange =
         "<ModelExchange modelIdentifier=\"unit\" needsCompletedIntegratorStep=\"true\"/>";
     let simulation =
@@ -271,8 +278,7 @@ fn parts_of_a_unit_run_at_the_ticks_of_clocks() {
         .replace(exchange, "<ScheduledExecution modelIdentifier=\"unit\"/>")
         .replace(simulation, "")
         .replace("</ModelVariables>", clocks);
-    let bytes = archive(&[("modelDescription.xml", description.as_bytes()), (&path, &library)]);
-    fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+    let Some(here) = with_description(3, &description) else { return };
     let data = "time,tick,u\n0,0,0\n0.6,1,2\n1.5,1,3\n2,0,0\n";
     fs::write(here.path().join("t.csv"), data).expect("written");
     let all = simulated(&here, &["--input", "t.csv"]);
@@ -400,23 +406,165 @@ fn faults_of_a_unit_are_said() {
     assert!(code == 0 && !here.path().join("remaining.txt").exists(), "{out}{errors}");
 }
 
+/// What the program says, on one line, where calls of units may take so many seconds.
+fn patient(here: &TempDir, arguments: &[&str], seconds: &str) -> (i32, String) {
+    let mut child = command(here.path(), arguments);
+    let output = child.env("GAPILIB_FMU_CALL_SECONDS", seconds).output().expect("it ends");
+    let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    (output.status.code().unwrap_or(-1), one_line(&text))
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// A call that does not return is ended after the seconds that the environment gives it.
 #[test]
 fn a_call_that_does_not_return_is_ended() {
     let Some(here) = with_unit(3) else { return };
     let hang = format!("fault={HANG}");
     let simulate = ["simulate", "unit.fmu", "--allow-external", "--set", &hang];
-    for (seconds, said) in [
+    let step = [&simulate[..], &["--method", "co-simulation"]].concat();
+    for (arguments, seconds, said) in [
         (
+            &simulate[..],
             "0.5",
-            "a call of it did not return; it printed last: a call of the FMU has not returned for 0.5 s",
+            "a call of `fmi3SetTime` has not returned for 0.5 s (GAPILIB_FMU_CALL_SECONDS allows more)",
         ),
-        ("soon", "GAPILIB_FMU_CALL_SECONDS is not a number of seconds"),
+        (&step, "0.5", "a call of `fmi3DoStep` has not returned for 0.5 s"),
+        (&simulate, "soon", "GAPILIB_FMU_CALL_SECONDS is not a number of seconds"),
     ] {
-        let mut child = command(here.path(), &simulate);
-        let output = child.env("GAPILIB_FMU_CALL_SECONDS", seconds).output().expect("it ends");
-        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.code() == Some(1) && errors.contains(said), "{seconds}: {errors}");
+        let (code, text) = patient(&here, arguments, seconds);
+        assert!(code == 1 && text.contains(said), "{seconds}: {text}");
+    }
+}
+
+/// A fit in which no call returns ends, after a few simulations, with the function.
+#[test]
+fn a_fit_of_a_unit_that_always_hangs_ends() {
+    let Some(here) = with_unit(3) else { return };
+    fs::write(here.path().join("d.csv"), data()).expect("written");
+    let entry = format!("set = {{ fault = {HANG} }}\n");
+    fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
+    let (_, text) = patient(&here, &["identify", "p.toml", "--allow-external"], "0.2");
+    assert!(text.contains("a call of `fmi3SetTime` has not returned for 0.2 s"), "{text}");
+}
+
+/// Values that are not finite, and a unit that ends the simulation, are noted; a fit counts both as failures.
+#[test]
+fn missing_values_and_early_ends_are_said() {
+    for version in [2, 3] {
+        let Some(here) = with_unit(version) else { return };
+        fs::write(here.path().join("d.csv"), data()).expect("written");
+        let simulate = ["simulate", "unit.fmu", "--allow-external", "--set"];
+        for kind in [&["--method", "dassl"][..], &["--method", "co-simulation"]] {
+            let fault = format!("fault={NO_OUTPUT}");
+            let (code, _, errors) = gapi(&here, &[&simulate[..], &[&fault], kind].concat());
+            let said =
+                one_line(&errors).contains("`unit.fmu` gives no numbers: `y` is NaN from 0.");
+            assert!(code == 0 && said, "{errors}");
+            // Units of FMI 2.0 for model exchange need not announce completed steps.
+            if version == 2 && kind[1] == "dassl" {
+                continue;
+            }
+            let fault = format!("fault={END}");
+            let (code, _, errors) = gapi(&here, &[&simulate[..], &[&fault], kind].concat());
+            let said = one_line(&errors).contains("`unit.fmu` ended the simulation at 0.");
+            assert!(code == 0 && said && errors.contains("before 2 s"), "{errors}");
+        }
+        for (fault, said) in [(NO_OUTPUT, "`y` is NaN"), (END, "ended the simulation")] {
+            let entry = format!("integrator = \"co-simulation\"\nset = {{ fault = {fault} }}\n");
+            fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
+            let (_, out, errors) = gapi(&here, &["identify", "p.toml", "--allow-external"]);
+            assert!(one_line(&format!("{out}{errors}")).contains(said), "{out}{errors}");
+        }
+    }
+}
+
+/// A step that says it has ended elsewhere has failed.
+#[test]
+fn steps_end_within_themselves() {
+    for (version, function) in [(2, "fmi2GetRealStatus"), (3, "fmi3DoStep")] {
+        let Some(here) = with_unit(version) else { return };
+        let fault = format!("fault={AWAY}");
+        let simulate = ["simulate", "unit.fmu", "--allow-external", "--set", &fault];
+        let (code, _, errors) =
+            gapi(&here, &[&simulate[..], &["--method", "co-simulation"]].concat());
+        let text = one_line(&errors);
+        let said =
+            format!("`{function}` of the FMU says that its step from 0.5 s to 0.6 s ended at 99 s");
+        assert!(code == 1 && text.contains("`unit.fmu`") && text.contains(&said), "{text}");
+    }
+}
+
+/// A ramp between two rows of the data, with few output points: the mean over short steps, and in FMI 2.0
+/// derivatives of the input. Rows show what the outputs were computed with.
+#[test]
+fn inputs_change_during_steps_of_co_simulation() {
+    let flag = "canHandleVariableCommunicationStepSize=\"true\"";
+    for (version, tolerance) in [(2, 1e-12), (3, 3e-6)] {
+        let more = if version == 2 { " canInterpolateInputs=\"true\"" } else { "" };
+        let description = description(version).replace(flag, &format!("{flag}{more}"));
+        let Some(here) = with_description(version, &description) else { return };
+        fs::write(here.path().join("u.csv"), "time,u\n0,0\n2,4\n").expect("written");
+        let cs = ["--input", "u.csv", "--method", "co-simulation", "--intervals", "10"];
+        let all = simulated(&here, &[&cs[..], &["--set", "k=2"]].concat());
+        for (row, t) in column(&all, "time").iter().enumerate() {
+            near(column(&all, "u")[row], 2.0 * t, 1e-12);
+            near(column(&all, "w")[row], 4.0 * t, 1e-12);
+            let exact = t - 0.5 + 1.5 * (-2.0 * t).exp();
+            near(column(&all, "x")[row], exact, tolerance);
+        }
+    }
+}
+
+/// A permission is for a path, or for a name in any folder.
+#[test]
+fn units_are_allowed_by_their_paths() {
+    let Some(here) = with_unit(3) else { return };
+    let folder = here.path().join("sub");
+    fs::create_dir(&folder).expect("made");
+    fs::copy(here.path().join("unit.fmu"), folder.join("unit.fmu")).expect("copied");
+    let absolute = here.path().join("unit.fmu");
+    let absolute = absolute.to_string_lossy();
+    for (unit, allowed, is_allowed) in [
+        ("unit.fmu", "unit.fmu", true),
+        ("unit.fmu", "./unit.fmu", true),
+        ("./unit.fmu", "sub/../unit.fmu", true),
+        ("unit.fmu", &absolute, true),
+        (&absolute, "./unit.fmu", true),
+        ("sub/unit.fmu", "unit.fmu", true),
+        ("sub/unit.fmu", "sub/unit.fmu", true),
+        ("sub/unit.fmu", "./unit.fmu", false),
+        ("unit.fmu", "sub/unit.fmu", false),
+    ] {
+        let allow = format!("--allow-external={allowed}");
+        let (code, _, errors) = gapi(&here, &["simulate", unit, &allow]);
+        assert_eq!(code == 0, is_allowed, "{unit} {allowed}: {errors}");
+        let help = format!("`--allow-external={unit}`");
+        assert!(is_allowed || one_line(&errors).contains(&help), "{errors}");
+    }
+}
+
+/// A fit says by which kind a unit is simulated that offers two, and what starts with other values than the
+/// description has.
+#[test]
+fn fits_say_the_kind_and_other_starts() {
+    let other = "<Float64 name=\"other\" valueReference=\"16\" causality=\"parameter\" \
+                 variability=\"fixed\" start=\"3\"/></ModelVariables>";
+    let description = DESCRIPTION_3.replace("</ModelVariables>", other);
+    let Some(here) = with_description(3, &description) else { return };
+    fs::write(here.path().join("d.csv"), data()).expect("written");
+    for (entry, kind) in [
+        ("", "is simulated by model exchange"),
+        ("integrator = \"co-simulation\"\n", "is simulated by co-simulation, as `integrator` says"),
+    ] {
+        fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
+        let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--allow-external"]);
+        let text = one_line(&format!("{out}{errors}"));
+        let starts =
+            "computes with other values than its description says: other = 7 in the place of 3";
+        assert!(code == 0 && text.contains(kind) && text.contains(starts), "{text}");
     }
 }
 
@@ -612,14 +760,14 @@ fn files_that_are_not_usable_units_are_refused() {
 #[test]
 fn a_wrong_token_is_said_by_the_unit() {
     for (version, attribute) in [(2, "guid=\"{unit}\""), (3, "instantiationToken=\"{unit}\"")] {
-        let here = folder(&[]);
-        let Some(library) = library(version, here.path()) else { return };
         let xml = description(version).replace(attribute, &attribute.replace("unit", "other"));
-        let path = format!("binaries/{}/unit.so", platform(version).expect("known"));
-        let bytes = archive(&[("modelDescription.xml", xml.as_bytes()), (&path, &library)]);
-        fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+        let Some(here) = with_description(version, &xml) else { return };
         let (code, out, errors) = gapi(&here, &["simulate", "unit.fmu", "--allow-external"]);
         assert!(code == 1 && errors.contains("says (logStatusError): wrong"), "{out}{errors}");
+        let name = attribute.split('=').next().unwrap_or_default();
+        let help = format!("which has the {name} `{{other}}`; it has no folder `resources`");
+        let text = one_line(&errors);
+        assert!(text.contains("makes no instance: wrong") && text.contains(&help), "{errors}");
     }
 }
 

@@ -95,11 +95,12 @@ fn assertions_between_events_hold_in_units() {
     }
 }
 
-/// In co-simulation inputs stand still during a step, which is said; their column has their own values.
+/// In co-simulation inputs are at their mean during a step, which is said; rows have their own values, and
+/// outputs that follow from these.
 #[test]
-fn inputs_held_between_communication_points_are_noted() {
-    let text =
-        "model Sum input Real u; Real x(start = 0, fixed = true); equation der(x) = u; end Sum;";
+fn inputs_of_co_simulation_have_their_mean() {
+    let text = "model Sum input Real u; output Real y = 2*u; Real x(start = 0, fixed = true); \
+                equation der(x) = u; end Sum;";
     let here = folder(&[("Sum.mo", text), ("u.csv", "time,u\n0,0\n1,1\n2,0\n")]);
     let (code, out, errors) =
         exporting(&here, &["export-fmu", "Sum.mo", "--model", "Sum", "-o", "unit.fmu"]);
@@ -113,8 +114,76 @@ fn inputs_held_between_communication_points_are_noted() {
         for (t, u) in column(&all, "time").iter().zip(column(&all, "u")) {
             near(*u, 1.0 - (t - 1.0).abs(), 1e-9);
         }
-        let note = "during a step the inputs `u` have their values at its beginning";
+        for (row, t) in column(&all, "time").iter().enumerate() {
+            let x = if *t < 1.0 { t * t / 2.0 } else { 1.0 - (2.0 - t).powi(2) / 2.0 };
+            near(column(&all, "x")[row], x, 1e-6);
+            near(column(&all, "y")[row], 2.0 * column(&all, "u")[row], 1e-9);
+        }
+        let note = "during a step the inputs `u` are constant, at their mean";
+        let errors = errors.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(errors.contains(note), is_noted, "{errors}");
+    }
+}
+
+const MODES: &str = "model Heater type Mode = enumeration(off \"no heat\", on); input Mode mode; \
+                     parameter Integer n = 2; parameter Real c = 1 annotation(Evaluate = true); \
+                     final parameter Integer m = 3; Real x[n](each start = 0, each fixed = true); \
+                     Real z[m]; output Boolean hot = mode == Mode.on; equation z = fill(c, m); \
+                     der(x) = fill(if mode == Mode.on then 1 else 0, n); end Heater;";
+
+/// Columns with literals of an enumeration are inputs of models and of units.
+#[test]
+fn columns_of_literals_are_inputs() {
+    let here = folder(&[
+        ("Heater.mo", MODES),
+        ("m.csv", "time,mode\n0,off\n1,Mode.on\n2,2\n3,Heater.Mode.off\n4,1\n"),
+        ("on.csv", "time,mode\n0,off\n1,on\n3,off\n4,off\n"),
+        ("w.csv", "time,mode\n0,off\n1,slow\n"),
+        ("n.csv", "time,mode\n0,1\n1,3\n"),
+    ]);
+    let export = ["export-fmu", "Heater.mo", "--model", "Heater", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    for source in [&["Heater.mo", "--model", "Heater"][..], &["unit.fmu", "--allow-external"]] {
+        let simulate = |input: &str| {
+            let more = ["--input", input, "--stop-time", "4", "--output", "o.csv"];
+            gapi(&here, &[&["simulate"], source, &more].concat())
+        };
+        for input in ["m.csv", "on.csv"] {
+            let (code, out, errors) = simulate(input);
+            assert_eq!(code, 0, "{out}{errors}");
+            let all = columns(&here.path().join("o.csv"));
+            near(*column(&all, "x[1]").last().expect("a row"), 2.0, 1e-6);
+        }
+        for (input, said) in [
+            ("w.csv", "line 3: `slow` in `mode` is not one of its values"),
+            ("n.csv", "line 3: the input `mode` cannot be 3"),
+        ] {
+            let (code, _, errors) = simulate(input);
+            assert!(code == 1 && errors.contains(said), "{errors}");
+            let names = input == "w.csv" || errors.contains("its values are off (1), on (2)");
+            assert!(names, "{errors}");
+        }
+    }
+}
+
+/// What an importer cannot set any more is noted; literals keep their descriptions.
+#[test]
+fn an_export_says_what_is_constant() {
+    let here = folder(&[("Heater.mo", MODES)]);
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "Heater.mo", "--model", "Heater", "--fmi", version];
+        let (code, out, errors) = exporting(&here, &[&export[..], &["-o", "unit.fmu"]].concat());
+        let text = errors.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(text.contains("constant in the unit are `n`, `c`: they are structural"), "{text}");
+        let unit = fs::File::open(here.path().join("unit.fmu")).expect("a unit");
+        let archive = Archive::read(unit).expect("readable");
+        let text = archive.file("modelDescription.xml").expect("a description");
+        let description = description::read(text).expect("valid");
+        let items = &description.types[0].items;
+        assert_eq!(items[0].description.as_deref(), Some("no heat"));
+        assert_eq!(items[1].description, None);
     }
 }
 
@@ -475,31 +544,6 @@ fn parameters_in_results_are_those_that_the_unit_computes_with() {
         assert_eq!(last("level"), level);
         near(last("y"), level * (-1.0f64).exp(), 1e-6);
     }
-}
-
-/// Samples of an enumeration are numbers of its literals.
-#[test]
-fn inputs_have_values_of_their_enumeration() {
-    let text = "model M type Mode = enumeration(off, on); input Mode u; \
-                Real x(start = 0, fixed = true); equation \
-                der(x) = if u == Mode.on then 1 else 0; end M;";
-    let here = folder(&[
-        ("M.mo", text),
-        ("good.csv", "time,u\n0,1\n1,2\n2,2\n"),
-        ("bad.csv", "time,u\n0,1\n1,7\n2,2\n"),
-    ]);
-    let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
-    assert_eq!(code, 0, "{out}{errors}");
-    let run = ["simulate", "unit.fmu", "--allow-external", "--stop-time", "2", "--output", "r.csv"];
-    let run = [&run[..], &["--input"]].concat();
-    let (code, _, errors) = gapi(&here, &[&run[..], &["good.csv"]].concat());
-    assert_eq!(code, 0, "{errors}");
-    let all = columns(&here.path().join("r.csv"));
-    near(*column(&all, "x").last().expect("a row"), 1.0, 1e-6);
-    let (code, _, errors) = gapi(&here, &[&run[..], &["bad.csv"]].concat());
-    assert_eq!(code, 1, "{errors}");
-    assert!(errors.contains("the input `u` of `unit.fmu` cannot be 7"), "{errors}");
-    assert!(errors.contains("its values are off (1), on (2)"), "{errors}");
 }
 
 /// What is not continuous keeps the value of a sample until the next one, also between the events of

@@ -45,6 +45,7 @@ impl TestHost {
                 let definition = EnumerationDefinition {
                     name: Name::parse(&name),
                     literals: literals.collect(),
+                    descriptions: Vec::new(),
                 };
                 self.enumerations.insert(name, Arc::new(definition));
             }

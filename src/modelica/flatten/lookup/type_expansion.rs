@@ -14,10 +14,10 @@ use crate::flatten::lookup::types::Predefined;
 use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::ShortClass;
 use crate::syntax::ast::{
     ClassSpecifier, Element, EnumerationClass, Extends, Restriction, TypeSpecifier,
 };
+use crate::syntax::ast::{Comment, ShortClass};
 use crate::value::EnumerationDefinition;
 use std::sync::Arc;
 
@@ -266,6 +266,7 @@ fn language_enumeration(name: &str, literals: &[&str]) -> Arc<EnumerationDefinit
     Arc::new(EnumerationDefinition {
         name: Name::parse(name),
         literals: literals.iter().map(|literal| Ident::new(literal)).collect(),
+        descriptions: Vec::new(),
     })
 }
 
@@ -279,6 +280,10 @@ fn check_component_class(text: &Text, specifier: &TypeSpecifier) -> Result<(), D
     }
 }
 
+fn text(comment: &Comment) -> String {
+    comment.text.as_deref().unwrap_or_default().to_owned()
+}
+
 /// The enumeration that a class declares.
 fn enumeration_of(
     name: &Name,
@@ -289,6 +294,7 @@ fn enumeration_of(
         Some(literals) => Ok(Arc::new(EnumerationDefinition {
             name: name.clone(),
             literals: literals.iter().map(|literal| literal.name.node).collect(),
+            descriptions: literals.iter().map(|literal| text(&literal.comment)).collect(),
         })),
         None => Err(fault!(
             NOT_SUPPORTED,

@@ -65,6 +65,14 @@ impl<'r> Cells<'r, '_> {
         self.all().all(|(_, cell)| cell.is_empty())
     }
 
+    /// The cells where some are words: those of a column that `is_unreadable`, or of truth values.
+    pub fn words(self, is_unreadable: bool) -> Option<Vec<Option<String>>> {
+        let mut present = self.all().map(|(_, cell)| cell).filter(|cell| missing(cell).is_none());
+        let is_truth = present.next().is_some_and(|cell| truth(cell).is_some());
+        let known = |cell: &str| missing(cell).is_none().then(|| cell.to_owned());
+        (is_unreadable || is_truth).then(|| self.all().map(|(_, cell)| known(cell)).collect())
+    }
+
     /// The column as numbers or moments; `usual` is the decimal mark of the file.
     pub fn parse(self, usual: Option<char>) -> Result<Parsed, Fault> {
         let first = self.all().find(|(_, cell)| missing(cell).is_none());

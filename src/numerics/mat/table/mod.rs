@@ -19,6 +19,7 @@ pub(super) use moment::{duration, iso};
 
 use super::errors::BAD_TABLE;
 use super::matrix::{About, MatFile, Matrix, Version};
+use super::words::Words;
 use crate::diag::Fault;
 use crate::{bail, fault};
 use column::{Cells, Content, Parsed};
@@ -152,6 +153,9 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
             let (first, second) = (*first, *second);
             file.fail(name, two_columns(heading.name, layout.head.line, [first, second], places));
             continue;
+        }
+        if let Some(cells) = cells(layout, heading, places, strict).words(parsed.is_err()) {
+            file.words.insert(name.clone(), Words { cells, lines: lines.clone() });
         }
         let mut about =
             About { unit: heading.unit.clone(), lines: lines.clone(), ..About::default() };

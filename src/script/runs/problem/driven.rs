@@ -131,7 +131,7 @@ impl InputColumns {
         is_real: &dyn Fn(&str) -> bool,
     ) -> Option<ExperimentEntry> {
         let (found, missing): (Vec<&String>, Vec<&String>) =
-            names.iter().partition(|name| self.table.column(name).is_ok());
+            names.iter().partition(|name| self.table.has_column(name));
         if found.is_empty() {
             return None;
         }

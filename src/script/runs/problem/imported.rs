@@ -79,6 +79,12 @@ pub(super) fn build(
     let (samples, undecided) = follow(source, unit, abscissa, notes).map_err(one)?;
     let model = imported::model(unit, given, samples).at(entry.places.data).map_err(one)?;
     check_names(&model, entry, &abscissa.name).map_err(one)?;
+    let free: Vec<String> = parameters.iter().map(|(_, name)| name.clone()).collect();
+    let others = imported::other_starts(&model, &free).at(entry.places.data).map_err(one)?;
+    others.into_iter().for_each(|sentence| notes.warn(sentence));
+    if let Some(sentence) = other_kind(unit) {
+        notes.add(sentence);
+    }
     if let Some(sentence) = fixed_steps(unit) {
         notes.add(sentence);
     }
@@ -90,6 +96,23 @@ pub(super) fn build(
     let (experiment, series) = source.compare(session, subject, (abscissa, &observed), notes)?;
     let error = experiment.settings.tolerance;
     Ok(Built { experiment, series, error, program: None, undecided })
+}
+
+/// Which of two kinds a unit is simulated by, and how the other one is chosen.
+fn other_kind(unit: &Imported) -> Option<String> {
+    let description = &unit.description;
+    description.model_exchange.as_ref().and(description.co_simulation.as_ref())?;
+    Some(match unit.kind {
+        InterfaceKind::CoSimulation => format!(
+            "`{}` is simulated by co-simulation, as `integrator` says; without it by model exchange",
+            unit.file
+        ),
+        _ => format!(
+            "`{}` is simulated by model exchange, where errors of integration are controlled here; if the data are \
+             those of a co-simulation, write `integrator = \"co-simulation\"` in all experiments",
+            unit.file
+        ),
+    })
 }
 
 /// What fixed steps of a unit do to a fit: events lie on them. The reference unit `BouncingBall` has steps
@@ -247,22 +270,10 @@ fn samples(
     let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
     let declared = |name: &str| declared(unit, &layout, name);
     let (all, undecided) = inputs::recorded(entry, table, times, &declared, notes)?;
-    for one in &all {
-        let values = one.samples().iter().map(|(_, value)| *value);
-        if let Some(place) = layout.find(&one.name) {
-            let checked = imported::check_samples(unit, &one.name, place, values);
-            checked.map_err(|fault| fault.at(Span::NONE))?;
-        }
-    }
     let varying = all.iter().filter(|one| !one.is_held());
     let varying: Vec<String> = varying.map(|one| format!("`{}`", one.name)).collect();
     if unit.kind == InterfaceKind::CoSimulation && !varying.is_empty() {
-        notes.add(format!(
-            "co-simulation: during a step the inputs {} have their values at its beginning, whatever \
-             their interpolation; more output points, or model exchange where the FMU has it, follow them \
-             closer",
-            varying.join(", ")
-        ));
+        notes.add(during_steps(unit, &varying.join(", ")));
     }
     let sampled = all.iter().filter_map(|one| {
         Some(Samples {
@@ -273,6 +284,21 @@ fn samples(
         })
     });
     Ok((sampled.collect(), undecided))
+}
+
+/// What the inputs of co-simulation are during a step.
+fn during_steps(unit: &Imported, names: &str) -> String {
+    let own = unit.description.co_simulation.as_ref();
+    match own.is_some_and(|own| own.can_interpolate_inputs) {
+        true => format!(
+            "co-simulation: the FMU gets values and derivatives of the inputs {names} at the beginning of \
+             each step, and follows them during the step"
+        ),
+        false => format!(
+            "co-simulation: during a step the inputs {names} are constant, at their mean over the step; \
+             shorter steps, or model exchange where the FMU has it, follow them closer"
+        ),
+    }
 }
 
 /// The names of the inputs that are numbers.
@@ -302,6 +328,7 @@ fn declared(unit: &Imported, layout: &Layout, name: &str) -> Result<Declared, Fa
             _ => BaseType::Integer,
         },
         unit: VariableUnit::of_imported(unit, variable),
+        literals: imported::literals(unit, variable),
     })
 }
 

@@ -17,6 +17,7 @@ use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, FlatModel, RecordedInput, Variability};
 use crate::mat::{Column, MatFile};
+use crate::models::ranges::Range;
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
@@ -85,6 +86,8 @@ struct Followed {
 pub(super) struct Declared {
     pub base: BaseType,
     pub unit: VariableUnit,
+    /// The literals of an enumeration with their numbers; none for other types.
+    pub literals: Vec<(f64, String)>,
 }
 
 /// An input with the samples that it follows.
@@ -119,7 +122,8 @@ pub(super) fn inputs(
 ) -> Result<Vec<Undecided>, Diagnostic> {
     let declared = |name: &str| {
         let base = type_of_input(name, flat)?;
-        Ok(Declared { base, unit: variable_unit(flat, name) })
+        let literals = literals(&base);
+        Ok(Declared { base, unit: variable_unit(flat, name), literals })
     };
     let (all, undecided) = recorded(entry, table, x, &declared, notes)?;
     all.iter().for_each(|one| declare((&one.name, &one.base, one.place), &one.followed, enclosing));
@@ -186,9 +190,19 @@ fn type_of_input(name: &str, flat: &FlatModel) -> Result<BaseType, Fault> {
         bail!(BAD_OPTION, "`{name}` is a parameter, not an input"; help: "{}", inputs());
     }
     match &variable.base {
-        base @ (BaseType::Real | BaseType::Integer | BaseType::Boolean) => Ok(base.clone()),
+        base @ (BaseType::Real
+        | BaseType::Integer
+        | BaseType::Boolean
+        | BaseType::Enumeration(_)) => Ok(base.clone()),
         _ => bail!(BAD_OPTION, "`{name}` is not a number; it cannot follow a column of the data"),
     }
+}
+
+/// The literals of an enumeration with their numbers.
+fn literals(base: &BaseType) -> Vec<(f64, String)> {
+    let BaseType::Enumeration(definition) = base else { return Vec::new() };
+    let literals = definition.literals.iter().enumerate();
+    literals.map(|(at, literal)| ((at + 1) as f64, literal.to_string())).collect()
 }
 
 /// What an input does before its first sample and after its last one, where there are data.
@@ -264,16 +278,20 @@ fn followed(
     (name, requested): (&str, &ColumnEntry),
     table: &MatFile,
     (time_name, time): (&str, &[f64]),
-    Declared { base, unit }: &Declared,
+    Declared { base, unit, literals }: &Declared,
     notes: &mut Notes,
 ) -> Result<Followed, Fault> {
-    let column = data::column(table, requested, name, notes)?;
+    let column = match literals.is_empty() {
+        true => data::column(table, requested, name, notes)?,
+        false => table.named_values(requested.column.as_deref().unwrap_or(name), literals)?,
+    };
     notes.warn_about(
         table,
         fault_codes::codes(requested.column.as_deref().unwrap_or(name), &column),
     );
     data::same_length([time_name, name], [time.len(), column.values.len()])?;
     check_type(name, base, &column)?;
+    check_literals(name, literals, &column)?;
     let values = data::in_unit(&column, name, unit, requested, (table, notes))?.values;
     let rows: Vec<usize> =
         (0..time.len()).filter(|&row| time[row].is_finite() && values[row].is_finite()).collect();
@@ -330,6 +348,21 @@ fn check_type(name: &str, base: &BaseType, column: &Column) -> Result<(), Fault>
     )
 }
 
+/// Refuses numbers of no literal.
+fn check_literals(name: &str, literals: &[(f64, String)], column: &Column) -> Result<(), Fault> {
+    let limits = [f64::NEG_INFINITY, f64::INFINITY];
+    let literals = literals.iter().map(|(number, literal)| (*number, literal.as_str())).collect();
+    let range = Range { limits, literals };
+    if range.literals.is_empty() {
+        return Ok(());
+    }
+    let values = column.values.iter().enumerate().filter(|(_, value)| !value.is_nan());
+    for (row, value) in values {
+        range.check(&format!("{}: the input `{name}`", column.place(row)), *value)?;
+    }
+    Ok(())
+}
+
 /// Lets an input of the model follow its samples, through an input of the class around the model.
 fn declare(
     (name, base, place): (&str, &BaseType, Span),
@@ -340,6 +373,7 @@ fn declare(
     let kind = match base {
         BaseType::Boolean => "Boolean",
         BaseType::Integer => "Integer",
+        BaseType::Enumeration(definition) => &format!(".{}", definition.name),
         _ => "Real",
     };
     _ = writeln!(enclosing.declarations, "  input {kind} {own};");

@@ -35,60 +35,66 @@ fn a_start_value_is_set_and_a_state_is_kept_restored_and_reset() {
     own.set("Float64", "x", 3.0);
     own.initialize();
     assert_eq!(own.get::<f64>("Float64", "x"), 3.0);
-    type Keep = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
-    let (keep, free): (Symbol<Keep>, Symbol<Keep>) =
-        (function("fmi3GetFMUState"), function("fmi3FreeFMUState"));
-    let restore: Symbol<unsafe extern "C" fn(*mut c_void, *mut c_void) -> c_int> =
-        function("fmi3SetFMUState");
     own.step(0.0, 0.5);
-    let mut kept = std::ptr::null_mut();
-    assert_eq!(unsafe { keep(own.pointer, &raw mut kept) }, 0);
+    let kept = kept(&own);
     own.step(0.5, 0.5);
     let first: f64 = own.get("Float64", "x");
-    assert_eq!(unsafe { restore(own.pointer, kept) }, 0);
+    restore(&own, kept);
     close(own.get("Float64", "x"), 3.0 * (-0.5f64).exp(), 1e-7);
     own.step(0.5, 0.5);
     assert_eq!(own.get::<f64>("Float64", "x"), first, "the same bits again");
-    assert_eq!(unsafe { free(own.pointer, &raw mut kept) }, 0);
-    assert!(kept.is_null());
+    free(&own, kept);
     own.plain("fmi3Reset");
     own.initialize();
     assert_eq!(own.get::<f64>("Float64", "x"), 1.0, "nothing is left of what was set");
 }
 
+/// The state of an instance, kept.
+fn kept(own: &Instance) -> *mut c_void {
+    let mut kept = std::ptr::null_mut();
+    assert_eq!(unsafe { function::<Keep>("fmi3GetFMUState")(own.pointer, &raw mut kept) }, 0);
+    kept
+}
+
+type Keep = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
+
+/// Frees a state that was kept.
+fn free(own: &Instance, mut kept: *mut c_void) {
+    assert_eq!(unsafe { function::<Keep>("fmi3FreeFMUState")(own.pointer, &raw mut kept) }, 0);
+    assert!(kept.is_null());
+}
+
+/// Takes over a state that was kept.
+fn restore(own: &Instance, kept: *mut c_void) {
+    type Restore = unsafe extern "C" fn(*mut c_void, *mut c_void) -> c_int;
+    assert_eq!(unsafe { function::<Restore>("fmi3SetFMUState")(own.pointer, kept) }, 0);
+}
+
 /// The bytes of the state of an instance.
 fn state_bytes(own: &Instance) -> Vec<u8> {
-    type Keep = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
     type Size = unsafe extern "C" fn(*mut c_void, *mut c_void, *mut usize) -> c_int;
     type Write = unsafe extern "C" fn(*mut c_void, *mut c_void, *mut u8, usize) -> c_int;
-    let (mut kept, mut size) = (std::ptr::null_mut(), 0);
-    unsafe {
-        assert_eq!(function::<Keep>("fmi3GetFMUState")(own.pointer, &raw mut kept), 0);
-        let measure = function::<Size>("fmi3SerializedFMUStateSize");
-        assert_eq!(measure(own.pointer, kept, &raw mut size), 0);
-        let mut bytes = vec![0; size];
-        let write = function::<Write>("fmi3SerializeFMUState");
-        assert_eq!(write(own.pointer, kept, bytes.as_mut_ptr(), size), 0);
-        assert_eq!(function::<Keep>("fmi3FreeFMUState")(own.pointer, &raw mut kept), 0);
-        bytes
-    }
+    let (kept, mut size) = (kept(own), 0);
+    let measure = function::<Size>("fmi3SerializedFMUStateSize");
+    assert_eq!(unsafe { measure(own.pointer, kept, &raw mut size) }, 0);
+    let mut bytes = vec![0; size];
+    let write = function::<Write>("fmi3SerializeFMUState");
+    assert_eq!(unsafe { write(own.pointer, kept, bytes.as_mut_ptr(), size) }, 0);
+    free(own, kept);
+    bytes
 }
 
 /// Takes over the state in these bytes; the status.
 fn take_state(own: &Instance, bytes: &[u8]) -> c_int {
     type Read = unsafe extern "C" fn(*mut c_void, *const u8, usize, *mut *mut c_void) -> c_int;
-    type Restore = unsafe extern "C" fn(*mut c_void, *mut c_void) -> c_int;
-    type Free = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
+    let read = function::<Read>("fmi3DeserializeFMUState");
     let mut kept = std::ptr::null_mut();
-    unsafe {
-        let read = function::<Read>("fmi3DeserializeFMUState");
-        let status = read(own.pointer, bytes.as_ptr(), bytes.len(), &raw mut kept);
-        if status == 0 {
-            assert_eq!(function::<Restore>("fmi3SetFMUState")(own.pointer, kept), 0);
-            assert_eq!(function::<Free>("fmi3FreeFMUState")(own.pointer, &raw mut kept), 0);
-        }
-        status
+    let status = unsafe { read(own.pointer, bytes.as_ptr(), bytes.len(), &raw mut kept) };
+    if status == 0 {
+        restore(own, kept);
+        free(own, kept);
     }
+    status
 }
 
 /// A state goes as bytes from one instance to another, which continues with the same bits.
