@@ -17,6 +17,8 @@ pub enum Severity {
     Fatal,
     /// It asks to be called again and again.
     Endless,
+    /// It ends steps again and again where they begin.
+    NoProgress,
     /// It says that a step has ended at a time outside the step.
     Outside {
         /// The time that it says, seconds.
@@ -53,6 +55,9 @@ impl std::fmt::Display for CallError {
             Severity::Fatal => write!(f, "`{function}` of the FMU reports a fatal error"),
             Severity::Endless => {
                 write!(f, "the iteration of `{function}` at an event does not end")
+            }
+            Severity::NoProgress => {
+                write!(f, "`{function}` of the FMU returns early again and again, at one time")
             }
             Severity::Outside { reached, step: (from, to) } => write!(
                 f,

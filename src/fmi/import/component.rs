@@ -338,6 +338,15 @@ impl Component {
         call!(self, f.set_input_derivatives, reference, 1, order, &raw const derivative)
     }
 
+    /// That steps end where they begin.
+    pub fn makes_no_progress(&self) -> CallError {
+        let function = match self.functions() {
+            Functions::V2(f) => f.do_step.name,
+            Functions::V3(f) => f.do_step.name,
+        };
+        CallError { function, severity: Severity::NoProgress }
+    }
+
     /// Makes a step.
     pub fn step(&self, time: f64, length: f64) -> Result<StepEnd, CallError> {
         match self.functions() {

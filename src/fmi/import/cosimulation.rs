@@ -8,7 +8,7 @@
 use super::calls::CallError;
 use super::stepped::{Stepped, Stopped};
 use crate::Description;
-use crate::sim::{OutputGrid, Settings, SimErrorKind, Trajectory, same_time};
+use crate::sim::{OutputGrid, Settings, Trajectory, same_time};
 
 /// Steps in a row that do not advance.
 const MOST_WITHOUT_PROGRESS: u32 = 1000;
@@ -135,7 +135,7 @@ impl<'a> CoSimulation<'a> {
             let reached = if is_over { target } else { end.time };
             without_progress = if reached > t { 0 } else { without_progress + 1 };
             if without_progress > MOST_WITHOUT_PROGRESS {
-                return Err(Stopped::Kind(SimErrorKind::StepSize));
+                return Err(self.run.component.makes_no_progress().into());
             }
             self.run.time = reached;
             self.needs_event = end.needs_event;

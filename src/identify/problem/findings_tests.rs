@@ -190,6 +190,18 @@ fn a_model_beside_the_data_everywhere_does_not_pass() {
     assert!(has(&solution, FindingKind::Sigma));
 }
 
+/// An offset that no parameter follows: a standard deviation of zero is no measure of it.
+#[test]
+fn residuals_that_are_all_alike_are_said_as_they_are() {
+    let constant = |p: &[f64], _: f64| p[0] + 0.0 * p[1];
+    let fixed =
+        problem(&[(constant, vec![0.6; 30], Sigma::Unknown)], &[1.0, 1.0], [0.99, 1.1], None);
+    let (_, solution) = solved(fixed);
+    let found = solution.findings.iter().find(|own| own.kind == FindingKind::Bias);
+    let sentence = &found.expect("a bias").sentence;
+    assert!(sentence.contains("biased: all are 0.5 (30 of 30 are positive)"), "{sentence}");
+}
+
 /// All residuals of one sign, in a slow wave whose points count little each.
 #[test]
 fn a_wave_on_one_side_of_the_data_is_a_bias() {

@@ -405,6 +405,20 @@ fn a_model_may_terminate() {
     assert!((last - 2f64.ln()).abs() < 1e-8, "{last}");
 }
 
+/// A step of a method of high order goes far beyond the failure: it has no rows there.
+#[test]
+fn there_are_no_rows_after_an_assertion_has_failed() {
+    for method in ["dassl", "rodas4", "dop853"] {
+        let mut asserting = problems::decay();
+        asserting.assertion = |y| y[0] > 0.5;
+        let mut out = Trajectory::default();
+        let run = Simulator::new().run(&mut asserting, &by(method, settings(5.0, 1e-3)), &mut out);
+        let failed = run.unwrap_err().time;
+        assert!((failed - 2f64.ln()).abs() < 1e-2, "{method}: {failed}");
+        assert!(out.time().last().is_some_and(|last| *last <= failed), "{method}");
+    }
+}
+
 #[test]
 fn failures_say_when_and_why() {
     let settings = settings(5.0, 1e-6);

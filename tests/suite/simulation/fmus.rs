@@ -23,6 +23,7 @@ const WRITE: u32 = 8;
 const NO_OUTPUT: u32 = 9;
 const END: u32 = 10;
 const AWAY: u32 = 11;
+const STAY: u32 = 12;
 
 /// The folder of binaries for this machine, by version.
 pub(super) fn platform(version: u8) -> Option<&'static str> {
@@ -391,6 +392,7 @@ fn faults_of_a_unit_are_said() {
     for (fault, kind, said) in [
         (REFUSE, &step[..], "`fmi3DoStep` of the FMU refuses these values"),
         (REFUSE, &[], "`fmi3SetTime` of the FMU refuses these values"),
+        (STAY, &step, "at 0.5 s: `fmi3DoStep` of the FMU returns early again and again"),
         (NOT_A_NUMBER, &[], "a state is not finite"),
     ] {
         let set = format!("fault={fault}");
