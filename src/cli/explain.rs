@@ -19,6 +19,33 @@ pub(super) struct ExplainArgs {
     pub code: Option<String>,
 }
 
+/// Markdown as text for a terminal: headings without signs, what is below them indented, code farther.
+fn plain(markdown: &str) -> String {
+    let mut text = String::new();
+    let mut is_code = false;
+    let mut is_below_heading = false;
+    for line in markdown.lines() {
+        if std::mem::take(&mut is_below_heading) && line.is_empty() {
+            continue;
+        }
+        if line.starts_with("```") {
+            is_code = !is_code;
+            continue;
+        }
+        let (indent, line) = match line.strip_prefix("## ") {
+            Some(heading) if !is_code => {
+                is_below_heading = true;
+                ("", heading)
+            }
+            _ if is_code => ("    ", line),
+            _ => ("  ", line),
+        };
+        text += format!("{indent}{line}").trim_end();
+        text.push('\n');
+    }
+    text
+}
+
 /// Prints the explanation of one code, or the list of all.
 pub(super) fn explain(arguments: &ExplainArgs) -> ExitCode {
     let Some(slug) = &arguments.code else {
@@ -27,7 +54,7 @@ pub(super) fn explain(arguments: &ExplainArgs) -> ExitCode {
         return ExitCode::SUCCESS;
     };
     if let Some(code) = codes::all().into_iter().find(|code| code.slug == slug) {
-        terminal::print(&format!("# {}\n\n{}\n", code.slug, code.explanation.trim()));
+        terminal::print_report(&format!("{}\n\n{}", code.slug, plain(code.explanation.trim())));
         return ExitCode::SUCCESS;
     }
     let slugs: Vec<&str> = codes::all().iter().map(|code| code.slug).collect();

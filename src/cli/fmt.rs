@@ -1,7 +1,6 @@
 //! `gapi fmt`: the layout of Modelica files and scripts.
 
 use super::{disk, terminal};
-use crate::diag::render;
 use crate::format::{self, Failure, Language, diff};
 use crate::script::access::faults::cannot;
 use crate::source::{SourceId, SourceMap};
@@ -83,7 +82,7 @@ impl Input {
         format::format(source, &self.text, self.language).map_err(|failure| match failure {
             Failure::Syntax(error) if error.code == NOT_A_SCRIPT => Outcome::Data,
             Failure::Syntax(error) => {
-                terminal::eprint(&render::render(&error, &sources, false));
+                terminal::eprint(&terminal::rendered(&error, &sources));
                 Outcome::Failed
             }
             Failure::Changed => {

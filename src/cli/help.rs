@@ -41,7 +41,7 @@ const LEDGERS: [(DialectName, &str, &str); 2] = [
 pub(super) fn help(arguments: &HelpArgs, program: &clap::Command) -> ExitCode {
     if let Some(name) = arguments.compat {
         let all = LEDGERS.iter().filter(|(known, ..)| name.is_none_or(|name| name == *known));
-        all.for_each(|(_, title, ledger)| terminal::print(&table(title, ledger)));
+        all.for_each(|(_, title, ledger)| terminal::print_report(&table(title, ledger)));
         return ExitCode::SUCCESS;
     }
     if arguments.reference {
@@ -67,7 +67,7 @@ pub(super) fn help(arguments: &HelpArgs, program: &clap::Command) -> ExitCode {
                 ExitCode::FAILURE
             }
             all => {
-                all.iter().for_each(|header| terminal::print(&format!("{header}\n")));
+                all.iter().for_each(|header| terminal::print_report(&format!("{header}\n")));
                 ExitCode::SUCCESS
             }
         },
@@ -91,7 +91,7 @@ fn operators_of(name: Option<&str>) -> ExitCode {
         terminal::eprint(&format!("error: there is no such kind of operator; known: {known}\n"));
         return ExitCode::FAILURE;
     }
-    terminal::print(&text.join("\n"));
+    terminal::print_report(&text.join("\n"));
     ExitCode::SUCCESS
 }
 

@@ -4,7 +4,8 @@
 
 use super::args::Command;
 use super::session::is_class;
-use crate::diag::{Fault, render};
+use super::terminal;
+use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
 use crate::script::errors::FILE_ERROR;
 use crate::source::{SourceMap, Span};
@@ -84,7 +85,7 @@ pub(super) fn refusal(command: &Command) -> Option<String> {
         }
         _ => None,
     }?;
-    Some(render::render(&fault.at(Span::NONE), &SourceMap::default(), false))
+    Some(terminal::rendered(&fault.at(Span::NONE), &SourceMap::default()))
 }
 
 fn other_kind(path: &Path, expected: FileKind) -> Option<Fault> {

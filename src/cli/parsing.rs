@@ -1,6 +1,5 @@
 //! `gapi run --parse-only`: which scripts can be read.
 
-use crate::diag::render;
 use crate::script::language::parsing;
 use crate::script::language::parsing::Reading;
 use crate::source::SourceMap;
@@ -30,7 +29,7 @@ pub(super) fn parse_only(paths: &[PathBuf]) -> ExitCode {
             Reading::Data => data += 1,
             Reading::Rejected(error) => {
                 rejected += 1;
-                terminal::eprint(&render::render(&error, &sources, false));
+                terminal::eprint(&terminal::rendered(&error, &sources));
             }
         }
     }

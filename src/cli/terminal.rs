@@ -4,10 +4,12 @@
 use super::fitted::fitted;
 use super::live::Live;
 use super::options::Colour;
-use crate::diag::{visible, visible_coloured};
+use crate::diag::render::render_within;
+use crate::diag::{Diagnostic, visible, visible_coloured};
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
 use crate::script::world::Screen;
+use crate::source::SourceMap;
 use gapilib_identify::problem::Status;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use ratatui::crossterm::terminal::size;
@@ -186,6 +188,10 @@ impl Screen for Terminal {
         });
     }
 
+    fn columns(&self) -> Option<usize> {
+        columns_of_errors()
+    }
+
     fn is_one_screen(&self) -> bool {
         std::io::stdout().is_terminal() && std::io::stderr().is_terminal()
     }
@@ -253,6 +259,16 @@ fn columns() -> usize {
     // A terminal of a few columns would have a word on each line.
     let known = size().ok().map(|(columns, _)| usize::from(columns)).filter(|columns| *columns > 0);
     known.unwrap_or(COLUMNS).max(COLUMNS / 2)
+}
+
+/// Columns of the terminal that shows standard error, if one does.
+fn columns_of_errors() -> Option<usize> {
+    std::io::stderr().is_terminal().then(columns)
+}
+
+/// A diagnostic where there is no session.
+pub(super) fn rendered(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
+    render_within(diagnostic, sources, false, columns_of_errors().unwrap_or(usize::MAX))
 }
 
 /// What the program says, laid out for the terminal; unchanged elsewhere.

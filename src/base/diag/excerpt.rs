@@ -1,4 +1,4 @@
-//! Sources for the rendering of a diagnostic: very long lines are shown around the place.
+//! Sources for the rendering of a diagnostic: lines that are too long are shown around the place.
 
 use super::Diagnostic;
 use crate::source::{Source, SourceId, SourceMap, Span};
@@ -9,8 +9,17 @@ use std::ops::Range;
 /// Bytes of a line that is shown whole; tables in scripts have lines of a few thousand.
 const MAX_LINE: usize = 4000;
 
-/// Bytes kept of a longer line before the place and from there on.
-const KEPT: (usize, usize) = (40, 120);
+/// Bytes kept of a longer line before the place and from there on, where there is room for them.
+const KEPT: [usize; 2] = [40, 120];
+
+/// Columns before a quoted line: its number and the bar.
+const GUTTER: usize = 8;
+
+/// Columns of a tab.
+const TAB: usize = 4;
+
+/// Stands for what is left out of a line.
+const MARK: &str = "…";
 
 /// The sources of a diagnostic, with the lines that are too long cut.
 pub(super) struct Excerpts<'s> {
@@ -18,9 +27,14 @@ pub(super) struct Excerpts<'s> {
     cut: BTreeMap<usize, Cut>,
 }
 
-/// A source in which one line is cut.
+/// A source in which lines are cut.
 struct Cut {
     source: Source,
+    /// In their order.
+    lines: Vec<CutLine>,
+}
+
+struct CutLine {
     line: usize,
     /// What is kept of the line, in bytes of the original.
     kept: Range<usize>,
@@ -29,18 +43,26 @@ struct Cut {
 }
 
 impl<'s> Excerpts<'s> {
-    pub(super) fn of(diagnostic: &Diagnostic, sources: &'s SourceMap) -> Excerpts<'s> {
-        let mut cut = BTreeMap::new();
+    /// `width`: columns of the terminal.
+    pub(super) fn of(
+        diagnostic: &Diagnostic,
+        sources: &'s SourceMap,
+        width: usize,
+    ) -> Excerpts<'s> {
+        let mut lines: BTreeMap<usize, BTreeMap<usize, CutLine>> = BTreeMap::new();
         for label in &diagnostic.labels {
-            let id = label.span.source.0 as usize;
             if let Some(source) = sources.get(label.span.source)
-                && !cut.contains_key(&id)
-                && let Some(found) = Cut::of(source, label.span)
+                && let Some(found) = CutLine::of(source, label.span, width)
             {
-                cut.insert(id, found);
+                let own = lines.entry(label.span.source.0 as usize).or_default();
+                own.entry(found.line).or_insert(found);
             }
         }
-        Excerpts { sources, cut }
+        let cut = |(id, lines): (usize, BTreeMap<usize, CutLine>)| {
+            let source = sources.get(SourceId(id as u32))?;
+            Some((id, Cut::of(source, lines.into_values().collect())))
+        };
+        Excerpts { sources, cut: lines.into_iter().filter_map(cut).collect() }
     }
 
     /// The bytes of a place in what is shown of its source.
@@ -58,40 +80,73 @@ impl<'s> Excerpts<'s> {
     }
 }
 
-impl Cut {
+impl CutLine {
     /// `None` where the line of the place is short enough.
-    fn of(source: &Source, span: Span) -> Option<Cut> {
+    fn of(source: &Source, span: Span, width: usize) -> Option<CutLine> {
         let start = span.start as usize;
         let line = source.line_column(start).line - 1;
         let whole = source.line_range(line)?;
-        let text = &source.text;
-        let whole =
-            whole.start..whole.start + text[whole.clone()].trim_end_matches(['\r', '\n']).len();
-        if whole.len() <= MAX_LINE {
+        let text = source.text[whole.clone()].trim_end_matches(['\r', '\n']);
+        let whole = whole.start..whole.start + text.len();
+        let most = MAX_LINE.min(width.saturating_sub(GUTTER));
+        if text.chars().map(|c| if c == '\t' { TAB } else { 1 }).sum::<usize>() <= most {
             return None;
         }
+        let room = most.saturating_sub(2);
+        let [before, after] =
+            if room < KEPT[0] + KEPT[1] { [room / 3, room - room / 3] } else { KEPT };
         let boundary = |mut at: usize| {
-            while !text.is_char_boundary(at) {
+            while !source.text.is_char_boundary(at) {
                 at -= 1;
             }
             at
         };
-        let kept = boundary(start.saturating_sub(KEPT.0).max(whole.start))
-            ..boundary((start + KEPT.1).min(whole.end));
-        let shown =
-            format!("{}{}{}", &text[..whole.start], &text[kept.clone()], &text[whole.end..]);
-        let source = Source::new(source.name.clone(), shown);
-        Some(Cut { source, line, kept, whole })
+        let kept = boundary(start.saturating_sub(before).max(whole.start))
+            ..boundary((start + after).min(whole.end));
+        Some(CutLine { line, kept, whole })
+    }
+
+    fn shown(&self, text: &str) -> String {
+        let [lead, trail] = self.marks();
+        format!("{lead}{}{trail}", &text[self.kept.clone()])
+    }
+
+    fn marks(&self) -> [&'static str; 2] {
+        let mark = |is_whole: bool| if is_whole { "" } else { MARK };
+        [mark(self.kept.start == self.whole.start), mark(self.kept.end == self.whole.end)]
+    }
+
+    /// Bytes that are shown of it.
+    fn length(&self) -> usize {
+        self.kept.len() + self.marks().map(str::len).iter().sum::<usize>()
+    }
+}
+
+impl Cut {
+    fn of(source: &Source, lines: Vec<CutLine>) -> Cut {
+        let (mut shown, mut end) = (String::new(), 0);
+        for own in &lines {
+            shown += &source.text[end..own.whole.start];
+            shown += &own.shown(&source.text);
+            end = own.whole.end;
+        }
+        shown += &source.text[end..];
+        Cut { source: Source::new(source.name.clone(), shown), lines }
     }
 
     /// Where a byte of the original is, or the nearest that is shown.
     fn place(&self, at: usize) -> usize {
-        let left_out = self.whole.len() - self.kept.len();
-        match at {
-            at if at < self.whole.start => at,
-            at if at > self.whole.end => at - left_out,
-            at => at.clamp(self.kept.start, self.kept.end) - self.kept.start + self.whole.start,
+        let [mut shown, mut end] = [0, 0];
+        for own in self.lines.iter().take_while(|own| own.whole.start <= at) {
+            shown += own.whole.start - end;
+            if at <= own.whole.end {
+                let within = at.clamp(own.kept.start, own.kept.end) - own.kept.start;
+                return shown + own.marks()[0].len() + within;
+            }
+            shown += own.length();
+            end = own.whole.end;
         }
+        shown + at - end
     }
 }
 
@@ -124,9 +179,10 @@ impl<'a> Files<'a> for Excerpts<'_> {
     fn column_number(&'a self, id: usize, line: usize, byte_index: usize) -> Result<usize, Error> {
         let source = self.get(id)?;
         let column = source.line_column(byte_index).column;
-        let Some(cut) = self.cut.get(&id).filter(|cut| cut.line == line) else { return Ok(column) };
+        let own = self.cut.get(&id).and_then(|cut| cut.lines.iter().find(|own| own.line == line));
+        let Some(own) = own else { return Ok(column) };
         let original = self.sources.get(SourceId(id as u32)).ok_or(Error::FileMissing)?;
-        let before = &original.text[cut.whole.start..cut.kept.start];
-        Ok(column + before.chars().count())
+        let before = &original.text[own.whole.start..own.kept.start];
+        Ok(column + before.chars().count() - own.marks()[0].chars().count())
     }
 }

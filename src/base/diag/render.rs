@@ -10,8 +10,18 @@ use std::io;
 
 /// The diagnostic as the user sees it, with or without colours (ANSI escapes).
 pub fn render(diagnostic: &Diagnostic, sources: &SourceMap, colour: bool) -> String {
+    render_within(diagnostic, sources, colour, usize::MAX)
+}
+
+/// The same for a terminal of so many columns: of longer lines, what is around the place is quoted.
+pub fn render_within(
+    diagnostic: &Diagnostic,
+    sources: &SourceMap,
+    colour: bool,
+    width: usize,
+) -> String {
     let diagnostic = &diagnostic.clone().shortened();
-    let excerpts = Excerpts::of(diagnostic, sources);
+    let excerpts = Excerpts::of(diagnostic, sources, width);
     let shown = convert(diagnostic, sources, &excerpts);
     let config = term::Config::default();
     let mut text = if colour {
@@ -98,4 +108,39 @@ fn convert(
         .with_message(&diagnostic.message)
         .with_labels(labels)
         .with_notes(helps.chain(trace).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::{Code, Fault};
+    use crate::source::Span;
+
+    const WRONG: Code = Code { slug: "wrong", explanation: "" };
+
+    #[test]
+    fn long_lines_are_cut_around_every_place() {
+        let sources = SourceMap::default();
+        let long = format!("{}\u{e9} here {}\nshort\n", "a ".repeat(60), "b ".repeat(60));
+        let source = sources.add("f", format!("{long}{long}").as_str());
+        let place = |line: usize| {
+            let start = line * long.len() + long.find("here").unwrap_or(0);
+            Span::new(source, start, start + "here".len())
+        };
+        let wrong = Fault::new(WRONG, "no").at(place(1)).related(place(0), "first");
+        let wide = render(&wrong, &sources, false);
+        assert!(wide.contains(&"b ".repeat(60).trim_end().to_owned()), "{wide}");
+        let narrow = render_within(&wrong, &sources, false, 60);
+        assert!(narrow.lines().all(|line| line.chars().count() <= 60), "{narrow}");
+        let marked = |signs: &str| {
+            let lines: Vec<&str> = narrow.lines().collect();
+            let at = lines.iter().position(|line| line.contains(signs)).unwrap_or(0);
+            let columns =
+                |text: &str, part: &str| text.find(part).map(|at| text[..at].chars().count());
+            assert_eq!(columns(lines[at], signs), columns(lines[at - 1], "here"), "{narrow}");
+        };
+        marked("^^^^");
+        marked("----");
+        assert!(narrow.contains("f:3:123"), "{narrow}");
+    }
 }

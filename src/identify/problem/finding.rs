@@ -29,6 +29,8 @@ pub enum FindingKind {
     TooFewPoints,
     /// Points without a number.
     MissingPoints,
+    /// Columns that may be in another unit or have the other sign.
+    Misread,
     /// How data were read: units converted, lines left out, inputs between their samples.
     Data,
     /// Single points far from the others.
@@ -102,6 +104,7 @@ impl FindingKind {
             self,
             FindingKind::MissingPoints
                 | FindingKind::ColumnsEqual
+                | FindingKind::Misread
                 | FindingKind::ScaleOfOutputs
                 | FindingKind::ErrorModel
                 | FindingKind::SolverTolerance

@@ -32,6 +32,7 @@ mod journal;
 mod limits;
 mod linearization;
 mod minimum_test;
+mod misread;
 mod non_identifiable;
 mod notes;
 mod parts;
@@ -79,6 +80,7 @@ pub use journal::{
     Entry, Journal, Record, begin, decode, encode, header, is_of_another_version, without_times,
 };
 pub use linearization::Linearization;
+pub use misread::{Reading, short_fit};
 pub use non_identifiable::Form;
 pub(crate) use non_identifiable::NonIdentifiable;
 use parts::other_shards;

@@ -11,6 +11,8 @@ use crate::table::significant;
 /// A wider range of a parameter whose logarithm is searched, or that is positive, reaches this factor
 /// farther.
 const WIDER: f64 = 100.0;
+/// Begins what to do about a range.
+const WIDEN: &str = "Widen the range";
 
 impl Solution {
     /// Where a fit is worse than a constant, says first which ranges may be the cause.
@@ -87,6 +89,14 @@ pub(super) fn is_upper(parameter: &SolvedParameter) -> bool {
     parameter.value - min > max - parameter.value
 }
 
+/// Leaves out that a range is to be widened, where the cause may be another.
+pub(super) fn leave_out_remedy(finding: &mut Finding) {
+    if let Some(at) = finding.sentence.find(WIDEN) {
+        finding.sentence.truncate(at);
+        finding.sentence.truncate(finding.sentence.trim_end().len());
+    }
+}
+
 /// What to do about a range that ends before the best value.
 pub(super) fn remedy(parameter: &SolvedParameter) -> String {
     let [below, above] = wider(parameter);
@@ -101,7 +111,7 @@ pub(super) fn remedy(parameter: &SolvedParameter) -> String {
         true => String::new(),
         false => format!(", for example {}", examples.join(" or ")),
     };
-    format!("Widen the range{example}, or question the model if the bound is physical.")
+    format!("{WIDEN}{example}, or question the model if the bound is physical.")
 }
 
 /// Ends of a wider range: an end of 0 is most often physical, and a positive range stays positive.

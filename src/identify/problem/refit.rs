@@ -183,24 +183,24 @@ impl Run {
         Ok(is_better)
     }
 
-    /// The objective that other simulators of the same points reach by least squares from the best
-    /// point, and the simulations that it took; `None` where they cannot simulate that point.
+    /// What other simulators of the same points reach by least squares from the best point, and the
+    /// simulations that it took; `None` where they cannot simulate that point.
     ///
     /// # Errors
     ///
     /// Those of the simulators' maker.
-    pub fn objective_with(
+    pub fn best_with(
         &mut self,
         simulator: MakeSimulator,
         processors: &Processors,
-    ) -> Result<(Option<f64>, u64), Fault> {
+    ) -> Result<(Option<Best>, u64), Fault> {
         let own = std::mem::replace(&mut self.problem.simulator, simulator);
-        let found = self.objective_elsewhere(processors);
+        let found = self.best_elsewhere(processors);
         self.problem.simulator = own;
         found
     }
 
-    fn objective_elsewhere(&self, processors: &Processors) -> Result<(Option<f64>, u64), Fault> {
+    fn best_elsewhere(&self, processors: &Processors) -> Result<(Option<Best>, u64), Fault> {
         let Some(best) = &self.observed.best else { return Ok((None, 0)) };
         let mut evaluation = Evaluation::on(&self.problem, processors)?;
         evaluation.reweigh(&self.problem, self.evaluation.weights().to_vec());
@@ -212,9 +212,12 @@ impl Run {
             }
             None => (Some(best.values.clone()), 1),
         };
-        let simulated = values.and_then(|values| evaluation.simulate(&values).ok());
-        let objective = simulated.map(|row| evaluation.objective(&self.problem, &row));
-        Ok((objective, simulations))
+        let found = values.and_then(|values| {
+            let row = evaluation.simulate(&values).ok()?;
+            let fitness = evaluation.objective(&self.problem, &row);
+            Some(Best { values, fitness })
+        });
+        Ok((found, simulations))
     }
 
     /// Least squares from the best point, which it replaces; without least squares only the

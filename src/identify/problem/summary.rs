@@ -77,6 +77,7 @@ impl Solution {
         let about = (&statistics, &effects[..], &judged[..]);
         solution.findings = super::notes::findings(&solution, run, about, &simulated);
         solution.put_ranges_first();
+        solution.doubt_columns();
         if is_at_limit {
             solution.drop_intervals();
         }

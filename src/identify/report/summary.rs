@@ -50,7 +50,10 @@ fn verdict(view: &View) -> Markup {
     let identifiable = judged.iter().filter(|v| **v == Verdict::Identifiable).count();
     html! {
         strong class=(view.ending.class) { (view.ending.sentence) } " "
-        @if judged.is_empty() {
+        @if view.solution.may_be_misread() {
+            "Several parameters lie at ends of their ranges and the residuals have a pattern: check the "
+            "units and the signs of the data before anything is said of the parameters."
+        } @else if judged.is_empty() {
             "Standard errors are not available, so there is no statement on identifiability."
         } @else if identifiable == parameters.len() {
             @if identifiable == 1 { "The parameter is identifiable from these data." }
@@ -58,7 +61,15 @@ fn verdict(view: &View) -> Markup {
         } @else {
             (identifiable) " of " (parameters.len())
             @if parameters.len() == 1 { " parameter is " } @else { " parameters are " }
-            "identifiable from these data."
+            "identifiable from these data" (condition(view)) "."
         }
+    }
+}
+
+/// What the statement on the others depends on.
+fn condition(view: &View) -> String {
+    match view.solution.at_ends().as_slice() {
+        [] => String::new(),
+        names => format!(", given the values of {} at ends of their ranges", names.join(", ")),
     }
 }

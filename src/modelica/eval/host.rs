@@ -41,6 +41,11 @@ pub trait Host {
         reference: &ast::ComponentReference,
     ) -> Result<Option<Value>, Diagnostic>;
 
+    /// What a name that is not a variable means elsewhere, as a help.
+    fn meaning_elsewhere(&mut self, _name: &str) -> Option<String> {
+        None
+    }
+
     /// Names of functions, for "did you mean".
     fn function_names(&mut self) -> Vec<String> {
         Vec::new()

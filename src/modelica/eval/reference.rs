@@ -204,13 +204,15 @@ impl Evaluator<'_> {
                 return Ok(value);
             }
         }
+        let name = reference.name().to_string();
+        let elsewhere = self.host.meaning_elsewhere(&name);
         let fault = match reference.as_ident() {
-            Some(name) => {
-                let help = self.meant_otherwise(name.as_str());
-                self.scope.unknown(name).help_if(help)
+            Some(ident) => {
+                let help = elsewhere.or_else(|| self.meant_otherwise(&name));
+                self.scope.unknown(ident).help_if(help)
             }
             None => {
-                fault!(UNKNOWN_VARIABLE, "there is no variable `{}` here", reference.name())
+                fault!(UNKNOWN_VARIABLE, "there is no variable `{name}` here").help_if(elsewhere)
             }
         };
         Err(fault.at(reference.span))

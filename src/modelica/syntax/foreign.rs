@@ -53,14 +53,18 @@ impl Surroundings<'_> {
         }
     }
 
-    /// `0,5`
+    /// `0,5`: where entries are separated, the grammar stops after the comma, elsewhere at it.
     fn decimal_comma(&self) -> Option<Remedy> {
-        let whole = number_at_end(self.head.strip_suffix(',')?)?;
-        let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-        let is_decimal = self.gap.is_empty() && is_number(whole) && is_number(self.found);
+        let (head, decimals) = match self.found {
+            "," => (self.head, &self.tail[..self.tail.len() - after_digits(self.tail).len()]),
+            decimals => (self.head.strip_suffix(',')?, decimals),
+        };
+        let whole = number_at_end(head)?;
+        let is_number = |text: &str| !text.is_empty() && after_digits(text).is_empty();
+        let is_decimal = self.gap.is_empty() && is_number(whole) && is_number(decimals);
         is_decimal.then(|| Remedy {
             message: "a comma separates entries; numbers have a decimal point".to_owned(),
-            help: format!("write `{whole}.{}`", self.found),
+            help: format!("write `{whole}.{decimals}`"),
         })
     }
 
@@ -145,6 +149,10 @@ fn number_at_end(text: &str) -> Option<&str> {
     let is_number = number.starts_with(|c: char| c.is_ascii_digit())
         && number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
     is_number.then_some(number)
+}
+
+fn after_digits(text: &str) -> &str {
+    text.trim_start_matches(|c: char| c.is_ascii_digit())
 }
 
 fn split_word(text: &str) -> (&str, &str) {

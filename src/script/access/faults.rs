@@ -79,7 +79,7 @@ fn refused(refusal: Refusal, path: &Path) -> Fault {
     let is_closed = matches!(refusal, Refusal::System | Refusal::Denied);
     let verb = if is_closed { "opened" } else { verb };
     let message = format!("`{}` cannot be {verb}: {}", path.display(), refusal.reason());
-    Fault::new(REFUSED, message).help_if(refusal.help().map(str::to_owned))
+    Fault::new(REFUSED, message).help_if(refusal.help(path))
 }
 
 /// A path without `file://` and Windows' separators.

@@ -161,19 +161,20 @@ impl Refusal {
         }
     }
 
-    /// What the user can do about it.
-    pub fn help(self) -> Option<&'static str> {
-        match self {
+    /// What the user can do about it; `file` is what was refused.
+    pub fn help(self, file: &Path) -> Option<String> {
+        Some(match self {
             Refusal::Reading | Refusal::Link | Refusal::Owner => {
-                Some("allow it with `--allow-read=DIR`, or `--allow-read` for all files")
+                let folder = quoted(file.parent().unwrap_or(file));
+                format!("allow it with `--allow-read={folder}`, or `--allow-read` for all files")
             }
-            Refusal::System | Refusal::Reserved | Refusal::Denied => None,
-            Refusal::NamedLink => Some("name the file to which it leads, or remove the link"),
+            Refusal::System | Refusal::Reserved | Refusal::Denied => return None,
+            Refusal::NamedLink => "name the file to which it leads, or remove the link".to_owned(),
             Refusal::Kind => {
-                Some("write it to the output folder, or allow it with `--allow-write`")
+                "write it to the output folder, or allow it with `--allow-write`".to_owned()
             }
-            _ => Some("allow it with `--allow-write`"),
-        }
+            _ => "allow it with `--allow-write`".to_owned(),
+        })
     }
 
     /// Whether it was about reading.
@@ -183,6 +184,13 @@ impl Refusal {
             _ => Access::Write,
         }
     }
+}
+
+/// A folder as a shell takes it.
+fn quoted(folder: &Path) -> String {
+    let text = folder.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "/\\._-:~".contains(c);
+    if text.chars().all(is_plain) { text } else { format!("\"{text}\"") }
 }
 
 impl fmt::Display for Refusal {

@@ -43,10 +43,10 @@ pub(super) const FAMILY: Family = Family {
 /// The definition of a loaded class, or of one that can be.
 fn definition(session: &mut Session, name: &Name) -> Result<Arc<ClassDefinition>, Failure> {
     if !session.find_class(name)? {
-        return Err(session.classes.unknown_class(name).into());
+        return Err(session.classes.class_to_load(name).into());
     }
     let found = session.library().definition(name);
-    found.ok_or_else(|| session.classes.unknown_class(name).into())
+    found.ok_or_else(|| session.classes.class_to_load(name).into())
 }
 
 /// The same as a negative answer: `None` and the reason reported.

@@ -105,7 +105,7 @@ fn is_loaded(session: &mut Session, name: &Name) -> bool {
     let found = session.find_class(name);
     let found = session.or_report_all(found);
     if found == Some(false) {
-        let fault = session.classes.unknown_class(name);
+        let fault = session.classes.class_to_load(name);
         session.report_fault(fault);
     }
     found == Some(true)

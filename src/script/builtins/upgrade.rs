@@ -203,7 +203,7 @@ fn run_conversion_script(session: &mut Session, mut args: Args) -> Result<Value,
     let package: Name = args.take("packageToConvert")?;
     let script: String = args.take("scriptFile")?;
     if session.library().definition(&package).is_none() {
-        return Err(session.classes.unknown_class(&package).into());
+        return Err(session.classes.class_to_load(&package).into());
     }
     let outer = std::mem::replace(&mut session.extension::<Chosen>().0, package.first());
     session.execution.descend();

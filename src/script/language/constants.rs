@@ -79,7 +79,7 @@ impl Session {
                 Err(error) => _ = wrong.get_or_insert(error),
             }
         }
-        let unknown = || self.classes.unknown_class(name);
+        let unknown = || self.classes.class_to_load(name);
         Err(wrong.map_or_else(unknown, first_fault).at(span))
     }
 
@@ -91,7 +91,7 @@ impl Session {
         let function = self.asked(&format!("output .{shown} y;"))?;
         let component = function.and_then(|function| function.outputs.first().cloned());
         component
-            .ok_or_else(|| self.classes.unknown_class(name).at(Span::NONE))
+            .ok_or_else(|| self.classes.class_to_load(name).at(Span::NONE))
             .inspect(|found| self.keep_type(name, Some(found.clone())))
     }
 

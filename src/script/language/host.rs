@@ -53,6 +53,10 @@ impl Host for Session {
         }
     }
 
+    fn meaning_elsewhere(&mut self, name: &str) -> Option<String> {
+        self.trajectory_help(name)
+    }
+
     fn function_names(&mut self) -> Vec<String> {
         let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
         names.extend(self.classes.read_names().iter().map(Name::to_string));

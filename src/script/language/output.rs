@@ -74,10 +74,9 @@ impl Output {
             return is_error;
         }
         let plain = render::render(&diagnostic, sources, false);
-        match (quiet && !is_error, screen.colour()) {
-            (true, _) => {}
-            (false, true) => screen.eprint(&render::render(&diagnostic, sources, true)),
-            (false, false) => screen.eprint(&plain),
+        if is_error || !quiet {
+            let width = screen.columns().unwrap_or(usize::MAX);
+            screen.eprint(&render::render_within(&diagnostic, sources, screen.colour(), width));
         }
         if let Some(transcript) = &mut self.transcript {
             transcript.report(&plain, diagnostic.code);

@@ -273,12 +273,14 @@ impl Classes {
         let hint = suggest::did_you_mean(&requested, known.iter().map(String::as_str))
             .or_else(|| suggest::did_you_mean(&requested, last));
         let misnamed = self.misnamed_note(name);
-        fault!(UNKNOWN_CLASS, "there is no class `{requested}`")
-            .help_if(misnamed)
-            .help_if(hint)
-            .help(
-                "load the file that defines it first, with `openModel` or `loadFile`, or give its \
+        fault!(UNKNOWN_CLASS, "there is no class `{requested}`").help_if(misnamed).help_if(hint)
+    }
+
+    /// The same in a script, which can load it.
+    pub fn class_to_load(&self, name: &Name) -> Fault {
+        self.unknown_class(name).help(
+            "load the file that defines it first, with `openModel` or `loadFile`, or give its \
              folder with `--library`",
-            )
+        )
     }
 }

@@ -198,7 +198,7 @@ impl Session {
     /// The `version` annotation of a loaded package; empty without.
     pub(crate) fn class_version(&self, name: &Name) -> Result<String, Fault> {
         let definition = self.classes.library.definition(name);
-        let definition = definition.ok_or_else(|| self.classes.unknown_class(name))?;
+        let definition = definition.ok_or_else(|| self.classes.class_to_load(name))?;
         Ok(version(&definition).unwrap_or_default())
     }
 

@@ -44,6 +44,16 @@ impl Session {
         Ok(true)
     }
 
+    /// How a script reads a variable of the model translated last, which its own names do not reach.
+    pub(crate) fn trajectory_help(&self, name: &str) -> Option<String> {
+        let model = self.models.last().filter(|model| model.declarations.contains_key(name))?;
+        Some(format!(
+            "`{name}` is a variable of `{}`, not of the script: read its values from the result file, \
+             `readTrajectory(\"dsres.mat\", {{\"{name}\"}}, readTrajectorySize(\"dsres.mat\"))`",
+            model.problem
+        ))
+    }
+
     /// Says once for each flag that it has no effect.
     fn note_idle_flag(&mut self, flag: &ComponentReference) {
         let name = flag.name().to_string();

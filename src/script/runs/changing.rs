@@ -20,17 +20,7 @@ type Values = Vec<(Ident, Value)>;
 /// They are not a script.
 pub(super) fn parsed(session: &mut Session, name: &str, text: &str) -> Result<Script, Diagnostic> {
     let source = session.sources.add(name, text);
-    syntax::parse_script(source, text).map_err(|wrong| match has_decimal_comma(text) {
-        true => wrong.help("numbers are written with a point: 0.5, not 0,5"),
-        false => wrong,
-    })
-}
-
-/// Whether a comma is between two digits outside of brackets.
-fn has_decimal_comma(text: &str) -> bool {
-    let has_brackets = text.contains(['(', '[', '{', '"']);
-    let is_between = |w: &[u8]| w[0].is_ascii_digit() && w[1] == b',' && w[2].is_ascii_digit();
-    !has_brackets && text.as_bytes().windows(3).any(is_between)
+    syntax::parse_script(source, text)
 }
 
 impl Session {

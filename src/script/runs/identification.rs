@@ -304,8 +304,9 @@ impl Session {
         let (pairs, others): (Vec<&[f64]>, Vec<&[f64]>) = stamps.partition(|own| own.len() > 1);
         if let Some(pair) = pairs.first().filter(|_| !others.is_empty()) {
             self.note_about_data(mat::errors::DATA_NOTE, format!(
-                "time stamps such as {} are in several consecutive rows: the first row is compared \
-                 with the value before an event there, the others with the value after it",
+                "time stamps such as {} are in several consecutive rows: all are kept; the first is \
+                 compared with the value just before a jump at that time, the others with the value \
+                 just after it; if a row was recorded twice, remove one",
                 pair[0]
             ));
         }

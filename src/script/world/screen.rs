@@ -13,6 +13,10 @@ pub trait Screen {
     }
     /// Text for standard error (diagnostics); no line end is added.
     fn eprint(&mut self, text: &str);
+    /// Columns of the terminal that shows standard error, if one does.
+    fn columns(&self) -> Option<usize> {
+        None
+    }
     /// Whether standard output and standard error are shown on the same screen, so that what one of
     /// them has said need not be said by the other.
     fn is_one_screen(&self) -> bool {

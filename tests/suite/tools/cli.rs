@@ -214,6 +214,20 @@ end Tank;";
     assert!(code == 1 && is_named, "{errors}");
 }
 
+/// A variable of a model is not one of the script that has simulated it.
+#[test]
+fn variables_of_a_model_are_read_from_its_results() {
+    let script = "openModel(\"Decay.mo\");\nsimulateModel(\"Decay\");\ny := 2*x;\n";
+    let here = folder(&[("Decay.mo", DECAY), ("job.mos", script)]);
+    let (code, _, errors) = gapi(&here, &["run", "job.mos"]);
+    assert!(code == 1 && errors.contains("`readTrajectory(\"dsres.mat\", {\"x\"}"), "{errors}");
+    let problem = "model = \"Decai\"\n[parameters]\nrate = { min = 1, max = 2 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\noutputs = { x = \"x\" }\n";
+    let here = folder(&[("p.toml", problem), ("d.csv", "time,x\n0,1\n1,0.5\n")]);
+    let (_, _, errors) = gapi(&here, &["identify", "p.toml"]);
+    assert!(errors.contains("`files = [") && !errors.contains("openModel"), "{errors}");
+}
+
 #[test]
 fn wrong_names_get_a_suggestion() {
     let here = folder(&[("Decay.mo", DECAY)]);
@@ -239,7 +253,9 @@ fn check_flatten_explain_completions() {
     let (code, out, _) = gapi(&here, &["flatten", "Decay.mo", "--model", "Decay"]);
     assert!(code == 0 && out.contains("der(x) = "), "{out}");
     let (code, out, _) = gapi(&here, &["explain", "bad-seed"]);
-    assert!(code == 0 && out.contains("## What to do"), "{out}");
+    assert!(code == 0 && out.contains("\nWhat to do\n  "), "{out}");
+    let (_, out, _) = gapi(&here, &["explain", "unknown-class"]);
+    assert!(out.contains("\n    model M\n") && !out.contains("```"), "{out}");
     let (code, _, _) = gapi(&here, &["man", "--out", "pages"]);
     let page = |name| fs::read_to_string(here.path().join("pages").join(name)).unwrap();
     assert_eq!(code, 0);

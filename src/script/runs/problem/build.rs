@@ -8,6 +8,7 @@ use super::data::{Note, Notes};
 use super::enclosing_class::Base;
 use super::file::{ExperimentEntry, OneOrMany, ProblemFile, Role};
 use super::inputs::Undecided;
+use super::misread::{self, Doubts};
 use super::operators::{self, Named};
 use super::segments::Segment;
 use super::{experiment, imported, own_fitness, set_file};
@@ -46,8 +47,8 @@ pub(super) struct Built {
     pub notes: Vec<Note>,
     /// What the file says about the parameters of the model.
     pub(crate) calibration: Option<Calibration>,
-    /// Inputs of which it is not known how they continue between samples.
-    pub undecided: Vec<Undecided>,
+    /// What the data may mean otherwise.
+    pub doubts: Doubts,
     /// The functional mock-up unit, where the model is one.
     pub unit: Option<Arc<Imported>>,
 }
@@ -135,7 +136,8 @@ fn build_in(
     adjust(&mut problem, adjustments).map_err(one)?;
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
-    Ok(Built { problem, experiments, validation, origins, notes, calibration, undecided, unit })
+    let doubts = Doubts { undecided, readings: misread::all(&file.experiment) };
+    Ok(Built { problem, experiments, validation, origins, notes, calibration, doubts, unit })
 }
 
 fn one(fault: Fault) -> Vec<Diagnostic> {
@@ -169,7 +171,10 @@ fn check_class(session: &mut Session, file: &ProblemFile) -> Result<(), Vec<Diag
     let fault = match name.strip_suffix(".mo") {
         Some(class) => fault!(UNKNOWN_CLASS, "there is no class `{name}`")
             .help(format!("write the name of the class, `{class}`, and the file in `files`")),
-        None => session.classes.unknown_class(&base.class),
+        None => session.classes.unknown_class(&base.class).help(
+            "name the file or folder that defines it: `files = [\"Model.mo\"]`, from the folder of \
+             the problem file",
+        ),
     };
     Err(vec![fault.at(place)])
 }

@@ -103,6 +103,20 @@ pub(super) fn in_unit(
     name: &str,
     variable: &VariableUnit,
     entry: &ColumnEntry,
+    about: (&MatFile, &mut Notes),
+) -> Result<Measured, Fault> {
+    let mut measured = converted(column, name, variable, entry, about)?;
+    if let Some(tried) = entry.tried {
+        measured.values.iter_mut().for_each(|value| *value *= tried);
+    }
+    Ok(measured)
+}
+
+fn converted(
+    column: &Column,
+    name: &str,
+    variable: &VariableUnit,
+    entry: &ColumnEntry,
     (table, notes): (&MatFile, &mut Notes),
 ) -> Result<Measured, Fault> {
     let unit = variable.symbol.as_str();

@@ -496,7 +496,7 @@ fn note_used_twice(entry: &ExperimentEntry, notes: &mut Notes) {
             own.column.as_ref().unwrap_or(name).as_str() == column
         };
         if let Some((output, _)) = entry.all_outputs().find(same) {
-            notes.add(format!(
+            notes.warn(format!(
                 "the column `{column}` is both the input `{input}` and the output `{output}`"
             ));
         }

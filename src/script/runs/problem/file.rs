@@ -12,7 +12,7 @@ use std::ops::Deref;
 use std::path::PathBuf;
 
 /// A problem as the file says it.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProblemFile {
     pub title: Option<String>,
@@ -57,7 +57,7 @@ pub(super) struct ProblemFile {
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct ParameterEntry(pub ParameterTable);
 
 impl Deref for ParameterEntry {
@@ -78,7 +78,7 @@ pub(super) enum ValueEntry {
 }
 
 /// What the table of a parameter holds.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ParameterTable {
     pub min: Option<f64>,
@@ -101,7 +101,7 @@ pub(super) struct ParameterTable {
 }
 
 /// An experiment.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ExperimentEntry {
     pub name: Option<String>,
@@ -145,7 +145,7 @@ pub(super) struct ExperimentEntry {
 }
 
 /// Values of parameters: a table, or the name of a file of SSP, whose values are read into it.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct SetEntry {
     pub file: Option<PathBuf>,
     pub values: IndexMap<String, ValueEntry>,
@@ -194,6 +194,9 @@ pub(super) struct ColumnEntry {
     pub error: Option<String>,
     /// Seconds by which it is measured later: a number or a parameter.
     pub delay: Option<DelayEntry>,
+    /// What its values are multiplied with, to see whether they fit better so.
+    #[serde(skip)]
+    pub tried: Option<f64>,
 }
 
 /// A number, or the name of a parameter of the problem that is not one of the model.
@@ -210,7 +213,7 @@ pub(super) enum SigmaEntry {
     Words(String),
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) enum OneOrMany {
     One(String),
     Many(Vec<String>),
@@ -227,7 +230,7 @@ pub(super) struct FitnessEntry {
 }
 
 /// The method: its name and its settings.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 pub(super) struct MethodEntry {
     pub name: Option<String>,
     /// Whether least squares refine the result.
@@ -266,7 +269,7 @@ impl MethodEntry {
     }
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StopEntry {
     pub generations: Option<u64>,
@@ -276,7 +279,7 @@ pub(super) struct StopEntry {
     pub stagnation: Option<u64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckpointEntry {
     pub generations: Option<u64>,
@@ -284,13 +287,13 @@ pub(super) struct CheckpointEntry {
 }
 
 /// `true`, `false`, or names of variables.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) enum BandsEntry {
     Requested(bool),
     Variables(Vec<String>),
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DesignEntry {
     /// How many points are to be added.
@@ -318,7 +321,7 @@ pub(super) struct PriorNumbers {
     pub factor: Option<f64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BootstrapEntry {
     pub samples: Option<usize>,
@@ -328,7 +331,7 @@ pub(super) struct BootstrapEntry {
     pub interval: Option<String>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PosteriorEntry {
     /// Draws of each chain at most.
@@ -379,6 +382,7 @@ impl ColumnEntry {
             sigma: None,
             error: None,
             delay: None,
+            tried: None,
         }
     }
 }
@@ -411,6 +415,19 @@ impl ExperimentEntry {
 }
 
 impl Column {
+    /// Changes its entry.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut ColumnEntry)) {
+        let mut entry = match self {
+            Column::Replicates(columns) => {
+                ColumnEntry { columns: columns.clone(), ..ColumnEntry::named(None) }
+            }
+            Column::Name(name) => ColumnEntry::named(Some(name.clone())),
+            Column::More(entry) => (**entry).clone(),
+        };
+        change(&mut entry);
+        *self = Column::More(Box::new(entry));
+    }
+
     /// With the variable's name for what is not said; of replicates the first one.
     pub(super) fn entry(&self) -> ColumnEntry {
         match self {

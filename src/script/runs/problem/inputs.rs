@@ -253,8 +253,9 @@ fn note_gaps(mut torn: Vec<(String, Between, String)>, table: &MatFile, notes: &
         notes.warn_about(
             table,
             [format!(
-                "{inputs} {words}, in which {each} {}; to fit the parts between gaps with separate \
-             initial values, write `segments = \"auto\"` in the experiment",
+                "{inputs} {words}, in which {each} {}; to fit the parts between gaps separately, write \
+                 `segments = \"auto\"` in the experiment, and estimate the initial values of each part \
+                 (`initial = true`)",
                 between.in_gaps()
             )],
         );
@@ -303,8 +304,9 @@ fn followed(
             BAD_OPTION,
             "the time values of the input `{name}` decrease from {} to {} at {}",
             time[pair[0]], time[pair[1]], column.place(pair[1]);
-            help: "sort the rows, or write `segments = \"auto\"` in the experiment: it cuts the data \
-                   there into parts with separate initial values"
+            help: "sort the rows; where several measurements follow each other, write `segments = \
+                   \"auto\"` in the experiment, which cuts them there, and estimate the initial values \
+                   of each part (`initial = true`)"
         );
     }
     let samples: Vec<(f64, f64)> = rows.iter().map(|&row| (time[row], values[row])).collect();

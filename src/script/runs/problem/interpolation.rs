@@ -1,46 +1,28 @@
 //! Inputs of which neither the file nor the problem says how they continue between samples: after the
 //! fit the other way is tried, and both objectives are reported.
 
-use super::file::{Column, ProblemFile};
+use super::file::ProblemFile;
 use super::inputs::{Between, Undecided};
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
-use crate::identify::problem::{EndingKind, Finding, FindingKind, Run, Severity, Solution};
+use crate::identify::problem::{Best, EndingKind, Finding, FindingKind, Run, Severity, Solution};
 use crate::identify::significant;
 
 /// Objectives that differ by less than this part are equal: these data do not show the difference.
 const EQUAL: f64 = 1e-3;
 /// Ratios of objectives below this are said in percent: a factor of 1.00 says nothing.
 const FEW_PERCENT: f64 = 1.1;
+/// Parameters that are named.
+const NAMED: usize = 3;
 
-/// The columns of inputs before a change: experiment, input, column.
-pub(super) type Before = Vec<(usize, String, Column)>;
-
-/// Sets how inputs continue between samples; returns what they were.
-pub(super) fn set(file: &mut ProblemFile, names: &[&str], between: Between) -> Before {
-    let mut before = Vec::new();
-    for (number, experiment) in file.experiment.iter_mut().enumerate() {
-        let inputs = experiment.inputs.iter_mut();
-        for (name, column) in inputs.filter(|(name, _)| names.contains(&name.as_str())) {
-            let mut entry = column.entry();
-            if entry.interpolation.is_some() {
-                continue;
-            }
-            entry.interpolation = Some(between.name().to_owned());
-            let own = std::mem::replace(column, Column::More(Box::new(entry)));
-            before.push((number, name.clone(), own));
-        }
-    }
-    before
-}
-
-/// Puts back what [`set`] has replaced.
-pub(super) fn restore(file: &mut ProblemFile, before: Before) {
-    for (number, name, column) in before {
-        if let Some(own) = file.experiment[number].inputs.get_mut(&name) {
-            *own = column;
-        }
+/// Sets how these inputs continue between samples.
+fn set(file: &mut ProblemFile, names: &[&str], between: Between) {
+    let inputs = file.experiment.iter_mut().flat_map(|experiment| &mut experiment.inputs);
+    for (_, column) in inputs.filter(|(name, _)| names.contains(&name.as_str())) {
+        column.change(|entry| {
+            entry.interpolation.get_or_insert_with(|| between.name().to_owned());
+        });
     }
 }
 
@@ -64,9 +46,10 @@ pub(super) fn try_others(
         if names.is_empty() {
             continue;
         }
-        let other = again(session, Change::Interpolation(&names, assumed.other()))?;
+        let change = |file: &mut ProblemFile| set(file, &names, assumed.other());
+        let other = again(session, Change::Entries(&change))?;
         let processors = session.world.processors();
-        let (found, simulations) = run.objective_with(other.problem.simulator, &processors)?;
+        let (found, simulations) = run.best_with(other.problem.simulator, &processors)?;
         solution.effort.simulations_for_statistics += simulations;
         if session.world.interrupted() {
             let sentence = "Other interpolations of the inputs were not tried: the run was stopped \
@@ -74,52 +57,119 @@ pub(super) fn try_others(
             solution.findings.push(Finding::new(FindingKind::Missing, sentence));
             return Ok(());
         }
-        solution.findings.push(finding(&names, assumed, [Some(solution.fitness), found]));
+        let compared = Compared::of(solution, found);
+        solution.findings.push(finding(&names, assumed, compared));
     }
     Ok(())
 }
 
-fn finding(names: &[&str], assumed: Between, [own, other]: [Option<f64>; 2]) -> Finding {
+/// The fit and that with the other interpolation.
+struct Compared {
+    objectives: [f64; 2],
+    /// Parameters that move out of their intervals, by so many standard errors, the farthest first.
+    moved: Vec<(String, f64)>,
+    /// Whether the residuals have a pattern: then neither fit is known to be right.
+    has_pattern: bool,
+}
+
+impl Compared {
+    fn of(solution: &Solution, other: Option<Best>) -> Option<Compared> {
+        let Best { values, fitness } = other?;
+        let moved = solution.parameters.iter().zip(&values).filter_map(|(own, value)| {
+            let [low, high] = own.interval?;
+            let distance = (value - own.value).abs() / own.deviation?;
+            let is_within = (low..=high).contains(value);
+            (!is_within && distance.is_finite()).then(|| (own.name.clone(), distance))
+        });
+        let mut moved: Vec<(String, f64)> = moved.collect();
+        moved.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let objectives = [solution.fitness, fitness];
+        Some(Compared { objectives, moved, has_pattern: solution.has_pattern() })
+    }
+
+    /// Whether these data speak clearly for the fit that was made.
+    fn is_decided(&self) -> bool {
+        let [own, other] = self.objectives;
+        !self.has_pattern && other >= FEW_PERCENT * own
+    }
+
+    /// How far the estimates move, and that their intervals do not contain it.
+    fn movement(&self) -> String {
+        if self.moved.is_empty() || self.is_decided() {
+            return String::new();
+        }
+        let far: Vec<String> = self
+            .moved
+            .iter()
+            .take(NAMED)
+            .map(|(name, distance)| format!("{name} by {}", significant(*distance, 2)))
+            .collect();
+        let more = match self.moved.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more by less"),
+        };
+        format!(
+            " Between the two the estimates move out of their 95 % intervals, {}{more} (standard errors): \
+             the intervals do not contain the uncertainty of the interpolation.",
+            far.join(", ")
+        )
+    }
+}
+
+fn finding(names: &[&str], assumed: Between, compared: Option<Compared>) -> Finding {
     let inputs = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    let (Some(own), Some(other)) = (own, other) else {
+    let Some(compared) = compared else {
         let sentence = format!(
             "With `interpolation = \"{}\"` of {inputs}, the best point could not be simulated.",
             assumed.other().name()
         );
         return Finding::new(FindingKind::Data, sentence).severity(Severity::Information);
     };
+    let [own, other] = compared.objectives;
     let is_equal = (other - own).abs() <= EQUAL * own.abs();
     let better = if other < own { assumed.other() } else { assumed };
-    let ratio = own.max(other) / own.min(other);
-    let by = match ratio.is_finite() && own.min(other) > 0.0 {
-        true if ratio < FEW_PERCENT => format!(" by {} %", significant(100.0 * (ratio - 1.0), 2)),
-        true => format!(" by a factor of {}", significant(ratio, 3)),
-        false => String::new(),
+    let verdict = match (is_equal, compared.has_pattern) {
+        (true, _) => "these data do not show which is right".to_owned(),
+        (false, true) => format!(
+            "\"{}\" fits better{}, but the residuals have a pattern, so neither is shown to be right; \
+             write what is known of the inputs, or sample them more often",
+            better.name(),
+            by(own, other)
+        ),
+        (false, false) => format!("\"{}\" fits better{}", better.name(), by(own, other)),
     };
-    let verdict = match is_equal {
-        true => "these data do not show which is right".to_owned(),
-        false => format!("\"{}\" fits better{by}", better.name()),
-    };
-    let write = match (is_equal, better == assumed) {
-        (false, false) => format!(
+    let is_advised = !is_equal && !compared.has_pattern && better != assumed;
+    let write = match is_advised {
+        true => format!(
             "; write `interpolation = \"{}\"` in the entry of each in `inputs`",
             better.name()
         ),
-        _ => String::new(),
+        false => String::new(),
     };
+    let movement = compared.movement();
     let sentence = format!(
         "The interpolation of {inputs} is not given: with \"{}\" the objective is {}, with \"{}\" \
-         {} after another fit: {verdict}{write}.",
+         {} after another fit: {verdict}{write}.{movement}",
         assumed.name(),
         significant(own, 5),
         assumed.other().name(),
         significant(other, 5)
     );
-    let severity = match write.is_empty() {
-        true => Severity::Information,
-        false => Severity::Warning,
+    let severity = match is_advised || !movement.is_empty() {
+        true => Severity::Warning,
+        false => Severity::Information,
     };
     Finding::new(FindingKind::Data, sentence).severity(severity)
+}
+
+/// By how much the better of two objectives is better.
+fn by(own: f64, other: f64) -> String {
+    let ratio = own.max(other) / own.min(other);
+    match ratio.is_finite() && own.min(other) > 0.0 {
+        true if ratio < FEW_PERCENT => format!(" by {} %", significant(100.0 * (ratio - 1.0), 2)),
+        true => format!(" by a factor of {}", significant(ratio, 3)),
+        false => String::new(),
+    }
 }
 
 #[cfg(test)]
@@ -128,7 +178,9 @@ mod tests {
 
     #[test]
     fn small_differences_are_said_in_percent() {
-        let said = |other| finding(&["I"], Between::Constant, [Some(0.0025), Some(other)]).sentence;
+        let compared =
+            |other| Compared { objectives: [0.0025, other], moved: Vec::new(), has_pattern: false };
+        let said = |other| finding(&["I"], Between::Constant, Some(compared(other))).sentence;
         assert!(said(0.00245).contains("\"linear\" fits better by 2 %;"), "{}", said(0.00245));
         assert!(
             said(0.001).contains("\"linear\" fits better by a factor of 2.5;"),
@@ -136,5 +188,26 @@ mod tests {
             said(0.001)
         );
         assert!(said(0.0025001).contains("do not show which is right"), "{}", said(0.0025001));
+    }
+
+    #[test]
+    fn equal_objectives_with_other_estimates_are_a_warning() {
+        let compared = |has_pattern, other| Compared {
+            objectives: [0.0025, other],
+            moved: vec![("R".to_owned(), 9.0), ("C".to_owned(), 4.25)],
+            has_pattern,
+        };
+        let found = finding(&["I"], Between::Constant, Some(compared(false, 0.0025001)));
+        assert!(
+            found.sentence.contains("R by 9, C by 4.2 (standard errors)"),
+            "{}",
+            found.sentence
+        );
+        assert_eq!(found.severity, Severity::Warning);
+        let decided = finding(&["I"], Between::Constant, Some(compared(false, 0.025)));
+        assert!(!decided.sentence.contains("standard errors"), "{}", decided.sentence);
+        let torn = finding(&["I"], Between::Constant, Some(compared(true, 0.001))).sentence;
+        assert!(torn.contains("neither is shown to be right"), "{torn}");
+        assert!(!torn.contains("write `interpolation"), "{torn}");
     }
 }

@@ -30,6 +30,7 @@ mod interpolation;
 mod invariants;
 mod live;
 mod matching;
+mod misread;
 pub(crate) mod operators;
 mod own_fitness;
 pub(crate) mod own_function;
@@ -187,11 +188,10 @@ fn solve_stated(
                 file.seed = Some(seed);
                 built_for(session, &mut file, path, &options)
             }
-            Change::Interpolation(names, between) => {
-                let before = interpolation::set(&mut file, names, between);
-                let built = built_for(session, &mut file, path, &options);
-                interpolation::restore(&mut file, before);
-                built
+            Change::Entries(change) => {
+                let mut changed = file.clone();
+                change(&mut changed);
+                built_for(session, &mut changed, path, &options)
             }
         };
         session.options.quiet = is_quiet;
@@ -243,7 +243,7 @@ fn solve_built(
     again: &mut searches::Again<'_>,
     why: &mut Option<Diagnostic>,
 ) -> Result<Solution, Fault> {
-    let Built { problem, experiments, validation, origins, notes, calibration, undecided, unit: _ } =
+    let Built { problem, experiments, validation, origins, notes, calibration, doubts, unit: _ } =
         built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = prepared(session, problem, options)?;
@@ -282,7 +282,7 @@ fn solve_built(
             Solution::of(run, &ending.reason, validated(run, &validation, None)?).map(with)
         };
         solution = with_statistics(session, &mut run, solution, &solved, all, options)?;
-        interpolation::try_others(session, (&mut run, &mut solution), &undecided, again)?;
+        doubts.settle(session, (&mut run, &mut solution), again)?;
         solving::draw_curves(&experiments, &mut solution, &validation, hurry(session));
     }
     let is_interrupted = ending.is_interrupted || session.world.interrupted();
@@ -351,7 +351,7 @@ fn print(session: &mut Session, solution: &mut Solution, notes: Vec<Note>) {
         true => notes.iter().map(|note| note.sentence.clone()).collect(),
         false => Vec::new(),
     };
-    solution.findings.extend(notes.into_iter().map(Note::finding));
+    solution.add_notes(notes.into_iter().map(Note::finding).collect());
     session.print(&solution.text_after(&said));
 }
 

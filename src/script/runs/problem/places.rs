@@ -10,7 +10,7 @@ use std::fmt;
 use toml::Spanned;
 
 /// The places of a file.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Places {
     /// The class of the model, without its quotation marks.
     pub model: Option<Span>,

@@ -2,7 +2,7 @@
 //! becomes the run that statistics are made of.
 
 use super::build::Built;
-use super::inputs::Between;
+use super::file::ProblemFile;
 use super::search::{Ending, Search};
 use super::{Journalled, RunOptions, open};
 use crate::Session;
@@ -28,8 +28,8 @@ pub(super) type Again<'a> = dyn FnMut(&mut Session, Change<'_>) -> Result<Built,
 pub(super) enum Change<'a> {
     /// The seed, for all that is made from then on.
     Seed([f64; 6]),
-    /// How these inputs continue between samples, this once.
-    Interpolation(&'a [&'a str], Between),
+    /// Entries of the file, this once.
+    Entries(&'a dyn Fn(&mut ProblemFile)),
 }
 
 /// A finished search with its journal, from which it can be made again.

@@ -233,7 +233,7 @@ fn note_constant(y_name: &str, mut values: impl ExactSizeIterator<Item = f64>, n
     let count = values.len();
     let Some(first) = values.next().filter(|_| count > 3) else { return };
     if values.all(|value| value == first) {
-        notes.add(format!(
+        notes.warn(format!(
             "all {count} values of `{y_name}` are {first}: they determine no dynamics; check the \
              sensor and the column"
         ));

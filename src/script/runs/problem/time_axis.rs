@@ -114,15 +114,14 @@ pub(super) fn repeated(name: &str, column: &Column) -> Option<String> {
     let count = pairs().count();
     let first = pairs().next().filter(|_| count < groups.len());
     let Some([(row, stamp), (next, _), ..]) = first else { return column.repetition(name) };
-    let stamps = if count == 1 { "1 time stamp is" } else { &format!("{count} time stamps are") };
-    let more = pairs().filter(|group| group.len() > 2).count();
-    let others = match more {
-        0 => "the second row",
-        _ => "all further rows",
+    let stamps = match count {
+        1 => "1 time stamp is".to_owned(),
+        _ => format!("{count} time stamps are"),
     };
     Some(format!(
-        "{stamps} in several consecutive rows of `{name}`, such as {stamp} in {} and {}: the first \
-         row holds the values before an event there, {others} the values after it",
+        "{stamps} in several consecutive rows of `{name}`, such as {stamp} in {} and {}: all rows are \
+         kept; the first counts as the value just before a jump at that time, the others as values just \
+         after it; if a row was recorded twice, remove one",
         column.place(*row),
         column.place(*next)
     ))

@@ -308,6 +308,41 @@ fn boolean_and_integer_inputs_follow_columns_of_words_and_numbers() {
     says(&found(parameters, &wrong, &data), &["`K` is a parameter", "`open`, `level`"]);
 }
 
+/// Times in minutes that are read as seconds let the estimates end at their bounds.
+#[test]
+fn columns_that_are_read_wrongly_come_first_and_are_found() {
+    let parameters = "model = \"Valve\"\n[parameters]\nK = { min = 0.1, max = 3 }\n\
+                      T = { min = 10, max = 1000 }";
+    let experiment = "outputs = { y = \"y\" }\ninputs = { open = \"open\", level = \"level\" }";
+    let data = |sign: f64| {
+        table("time,open,level,y", |t| {
+            format!("{},2,{}", (1.0..3.0).contains(&t), sign * opened(t, 2.0))
+        })
+    };
+    let minutes = found(parameters, experiment, &data(1.0)).unwrap();
+    let first = &minutes.findings[0].sentence;
+    assert!(first.contains("check how the data are read"), "{first}");
+    assert!(
+        first.contains("with the times multiplied by 60, as if `time` was in minutes"),
+        "{first}"
+    );
+    let page = minutes.html();
+    assert!(!page.contains("parameters are identifiable from"), "{page}");
+    let parameters = parameters.replace("10, max = 1000", "0.1, max = 10");
+    let sign = found(&parameters, experiment, &data(-1.0)).unwrap();
+    let first = &sign.findings[0].sentence;
+    assert!(first.contains("the other sign of the column `y` (output `y`)"), "{first}");
+    let right = found(&parameters, experiment, &data(1.0)).unwrap();
+    assert!(!right.may_be_misread(), "{:?}", right.findings);
+    // A single parameter at an end: where a change explains the data, it comes before the range.
+    let data = table("time,x", |t| format!("{}", (-0.5 * t).exp()));
+    let parameters = "model = \"Cell\"\n[parameters]\nk = { min = 1e-4, max = 0.05 }";
+    let single = found(parameters, "outputs = { x = \"x\" }", &data).unwrap();
+    let first = &single.findings[0].sentence;
+    assert!(first.contains("in minutes (R² 1)"), "{first}");
+    assert!(!single.text().contains("Widen the range"), "{}", single.text());
+}
+
 #[test]
 fn measured_booleans_are_compared() {
     let parameters =

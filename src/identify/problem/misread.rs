@@ -1,0 +1,180 @@
+//! Data that may be read wrongly. Where several estimates lie at ends of their ranges and the residuals
+//! have a pattern, the cause is as often a column in another unit, or with the other sign, as a range
+//! that is too narrow: that is said first, and short fits to changed columns can show it.
+
+use super::range_notes;
+use super::{Finding, FindingKind, Run, Severity, Solution, SolvedSeries, Stop};
+use crate::diag::{Fault, suggest};
+use crate::ga::optimizer::METHODS;
+use crate::ranks::Processors;
+use crate::registry::{self, Options};
+use crate::table::significant;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Estimates at ends of their ranges that are no longer the matter of one range.
+const SEVERAL: usize = 2;
+/// A change explains the data far better where it leaves less than this part of the variance that the
+/// fit left: random columns of 60 rows come to half of it.
+const FAR_BETTER: f64 = 0.1;
+/// Changes that leave up to this times as much as the best one are named beside it: the other sign of an
+/// input is that of all outputs.
+const AS_GOOD: f64 = 2.0;
+
+/// A column that was read otherwise, and how well the model fits then.
+pub struct Reading {
+    /// What was changed, as the end of "with".
+    pub words: String,
+    /// The smallest coefficient of determination of all series after a short fit.
+    pub r_squared: Option<f64>,
+}
+
+impl Solution {
+    /// Whether columns are to be tried otherwise: data may be read wrongly, or the fit is worse than a
+    /// constant at an end of a range.
+    pub fn is_doubtful(&self) -> bool {
+        let is_poor = self.findings.iter().any(|finding| finding.kind == FindingKind::PoorFit);
+        self.may_be_misread() || is_poor && !self.at_ends().is_empty()
+    }
+
+    /// Whether it was said that data may be read wrongly.
+    pub fn may_be_misread(&self) -> bool {
+        self.findings.iter().any(|finding| finding.kind == FindingKind::Misread)
+    }
+
+    /// The parameters at ends of their ranges.
+    pub(crate) fn at_ends(&self) -> Vec<&str> {
+        let at_ends = self.parameters.iter().filter(|own| own.at_bound);
+        at_ends.map(|own| own.name.as_str()).collect()
+    }
+
+    /// Whether the residuals of a series have a pattern, or its fit is worse than a constant.
+    pub fn has_pattern(&self) -> bool {
+        self.findings.iter().any(|own| is_pattern(own))
+    }
+
+    /// Says first that columns may be read wrongly, where several estimates lie at ends.
+    pub(super) fn doubt_columns(&mut self) {
+        if self.at_ends().len() >= SEVERAL && self.has_pattern() {
+            self.put_columns_first();
+        }
+    }
+
+    fn put_columns_first(&mut self) {
+        let at_ends = self.at_ends();
+        let torn = self.findings.iter().filter(|own| is_pattern(own)).flat_map(|own| &own.series);
+        let mut torn: Vec<&str> = torn.map(String::as_str).collect();
+        torn.dedup();
+        let where_they_lie = match at_ends.len() {
+            1 => "lies at an end of its range",
+            _ => "lie at ends of their ranges",
+        };
+        let sentence = format!(
+            "{} {where_they_lie}, and the residuals of {} are not random: first check how the data are \
+             read, that is the unit of {}, and unit and sign of the columns of outputs and inputs. \
+             Until then neither the ranges nor the intervals say anything.",
+            suggest::listed(&at_ends),
+            torn.join(", "),
+            abscissas(&self.series)
+        );
+        let finding = Finding::new(FindingKind::Misread, sentence).severity(Severity::Serious);
+        let finding = finding.parameters(at_ends);
+        self.findings.iter_mut().for_each(range_notes::leave_out_remedy);
+        self.findings.insert(0, finding);
+    }
+
+    /// Adds what was said of the data when they were read. Where the fit has a pattern, what may be the
+    /// cause of it comes first.
+    pub fn add_notes(&mut self, notes: Vec<Finding>) {
+        let is_cause = |own: &Finding| self.has_pattern() && own.severity > Severity::Information;
+        let (mut first, last): (Vec<_>, Vec<_>) = notes.into_iter().partition(is_cause);
+        first.append(&mut self.findings);
+        first.extend(last);
+        self.findings = first;
+    }
+
+    /// The smallest coefficient of determination of the series.
+    fn smallest_r_squared(&self) -> Option<f64> {
+        smallest(&self.series)
+    }
+
+    /// Says how well the model fits columns that are read otherwise.
+    pub fn add_readings(&mut self, readings: &[Reading]) {
+        let known = readings.iter().filter_map(|reading| Some((reading, reading.r_squared?)));
+        let (count, Some(own)) = (known.clone().count(), self.smallest_r_squared()) else { return };
+        let best = known.clone().map(|(_, found)| found).fold(f64::NEG_INFINITY, f64::max);
+        // A fit that is worse than a constant explains nothing, however bad the other one is.
+        let is_better = best > 0.0 && 1.0 - best < FAR_BETTER * (1.0 - own);
+        if is_better && !self.may_be_misread() {
+            self.put_columns_first();
+        }
+        let own_finding = self.findings.iter_mut().find(|own| own.kind == FindingKind::Misread);
+        let Some(finding) = own_finding.filter(|_| count > 0) else { return };
+        finding.sentence += &match is_better {
+            false => format!(
+                " None of {} with another unit of the times, or another sign or a factor of 1000 or \
+                 0.001 of a column, explains the data far better.",
+                suggest::counted(count as u64, "short fit")
+            ),
+            true => {
+                let good = known.filter(|(_, found)| 1.0 - found <= AS_GOOD * (1.0 - best));
+                let words: Vec<String> = good
+                    .map(|(own, r)| format!("{} (R² {})", own.words, significant(r, 4)))
+                    .collect();
+                format!(
+                    " A short fit explains the data far better with {}; as they are, R² is {}.",
+                    words.join(", or with "),
+                    significant(own, 3)
+                )
+            }
+        };
+    }
+}
+
+fn is_pattern(finding: &Finding) -> bool {
+    let is_kind = matches!(finding.kind, FindingKind::Autocorrelation | FindingKind::PoorFit);
+    // Two outputs with errors in common have no pattern each.
+    is_kind && finding.series.len() == 1
+}
+
+fn abscissas(series: &[SolvedSeries]) -> String {
+    let mut names: Vec<String> = series.iter().map(|own| format!("`{}`", own.x[0])).collect();
+    names.sort();
+    names.dedup();
+    names.join(", ")
+}
+
+fn smallest(series: &[SolvedSeries]) -> Option<f64> {
+    series.iter().filter_map(|own| own.r_squared).min_by(f64::total_cmp)
+}
+
+/// The smallest coefficient of determination of the series of a problem after a fit of so many
+/// evaluations, and the simulations that it took.
+///
+/// # Errors
+///
+/// Those of the simulators' maker.
+pub fn short_fit(
+    mut problem: super::Problem,
+    evaluations: u64,
+    processors: &Processors,
+    cancel: Option<Arc<AtomicBool>>,
+) -> Result<(Option<f64>, u64), Fault> {
+    let method = registry::find("method", METHODS, "multistart")?;
+    problem.method = (method.make)(&mut Options::default())?;
+    problem.stop = Stop { evaluations: Some(evaluations), ..Stop::default() };
+    let mut run = Run::on(problem, processors)?;
+    run.evaluation.cancel_by(cancel);
+    while run.stop().is_none() && run.step(0.0).is_some() {}
+    let best = run.observed.best.as_ref();
+    let Some(row) = best.and_then(|best| run.evaluation.simulate(&best.values).ok()) else {
+        return Ok((None, run.simulations));
+    };
+    let mut rest = &row[..];
+    let solved = run.problem.series.iter().map(|own| {
+        let (simulated, others) = rest.split_at(own.x.len());
+        rest = others;
+        SolvedSeries::new(own, simulated)
+    });
+    Ok((smallest(&solved.collect::<Vec<_>>()), run.simulations))
+}

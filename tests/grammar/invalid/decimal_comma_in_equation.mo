@@ -1,0 +1,5 @@
+model M
+  Real x;
+equation
+  x = 3,5*time;
+end M;
