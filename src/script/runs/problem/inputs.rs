@@ -126,7 +126,10 @@ pub(super) fn inputs(
         Ok(Declared { base, unit: variable_unit(flat, name), literals })
     };
     let (all, undecided) = recorded(entry, table, x, &declared, notes)?;
-    all.iter().for_each(|one| declare((&one.name, &one.base, one.place), &one.followed, enclosing));
+    for one in &all {
+        let kind = type_in(&flat.name, &one.base);
+        declare((&one.name, &kind, one.place), &one.followed, enclosing);
+    }
     Ok(undecided)
 }
 
@@ -365,19 +368,27 @@ fn check_literals(name: &str, literals: &[(f64, String)], column: &Column) -> Re
     Ok(())
 }
 
+/// What a class that extends `model` calls a type: that of an enumeration within the model is inherited.
+fn type_in(model: &str, base: &BaseType) -> String {
+    match base {
+        BaseType::Boolean => "Boolean".to_owned(),
+        BaseType::Integer => "Integer".to_owned(),
+        BaseType::Enumeration(definition) => {
+            let name = definition.name.to_string();
+            let inherited = name.strip_prefix(model).and_then(|rest| rest.strip_prefix('.'));
+            inherited.map_or_else(|| format!(".{name}"), str::to_owned)
+        }
+        _ => "Real".to_owned(),
+    }
+}
+
 /// Lets an input of the model follow its samples, through an input of the class around the model.
 fn declare(
-    (name, base, place): (&str, &BaseType, Span),
+    (name, kind, place): (&str, &str, Span),
     followed: &Followed,
     enclosing: &mut EnclosingClass,
 ) {
     let own = enclosing_class::own_name("data of", name);
-    let kind = match base {
-        BaseType::Boolean => "Boolean",
-        BaseType::Integer => "Integer",
-        BaseType::Enumeration(definition) => &format!(".{}", definition.name),
-        _ => "Real",
-    };
     _ = writeln!(enclosing.declarations, "  input {kind} {own};");
     enclosing.elements.push((own.clone(), format!("the data of {name}")));
     enclosing.bind(name, enclosing_class::reference(&own, place), place);
