@@ -471,7 +471,7 @@ fn last_values(table: &ResultTable) -> Result<String, Fault> {
     for series in table.series.iter().take(SHOWN) {
         let value = table.column(&series.name)?.last().copied().unwrap_or(f64::NAN);
         let unit = if series.unit.is_empty() { "" } else { &series.unit };
-        text.push_str(&format!("  {} = {value} {unit}", series.name));
+        text.push_str(&format!("  {} = {} {unit}", series.name, in_figures(value)));
         text.truncate(text.trim_end().len());
         text.push('\n');
     }
@@ -484,9 +484,22 @@ fn last_values(table: &ResultTable) -> Result<String, Fault> {
     Ok(text)
 }
 
+/// A number without hundreds of zeros: limits of bounds are as large as 1e300.
+fn in_figures(value: f64) -> String {
+    let is_long = value.is_finite() && value.abs() >= 1e15;
+    if is_long { format!("{value:e}") } else { value.to_string() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn large_values_have_exponents() {
+        assert_eq!(in_figures(-1e300), "-1e300");
+        assert_eq!(in_figures(123456.5), "123456.5");
+        assert_eq!(in_figures(f64::INFINITY), "inf");
+    }
 
     #[test]
     fn settings_are_names_with_values() {

@@ -317,7 +317,20 @@ impl Stage {
                 .evaluate(instance.as_mut(), at, (column, x), out)
                 .map_err(|cause| Failed::new(FailureKind::Model, cause, 0.0))?;
         }
-        self.refuse_not_finite(out).map_err(|failed| Failed { at: None, progress: 0.0, ..failed })
+        self.refuse_not_finite(out).map_err(|failed| Failed { progress: 0.0, ..failed })
+    }
+
+    /// The simulation has no row at a point.
+    fn not_reached(&self, point: f64) -> Failed {
+        missing(&format!("the model ended the simulation before {}", self.point(point)))
+    }
+
+    /// A point in words.
+    fn point(&self, point: f64) -> String {
+        match self.x_name == TIME {
+            true => format!("{point} s"),
+            false => format!("`{}` = {point}", self.x_name),
+        }
     }
 
     /// Refuses points that cannot be compared.
@@ -327,11 +340,8 @@ impl Stage {
             let (own, others) = rest.split_at(points.len().min(rest.len()));
             rest = others;
             if let Some(at) = own.iter().position(|value| !value.is_finite()) {
-                let cause = format!("`{name}` is {}", own[at]);
-                return Err(match self.in_x {
-                    true => missing(&format!("{cause} at `{}` = {}", self.x_name, points[at])),
-                    false => Failed { at: Some(points[at]), ..missing(&cause) },
-                });
+                let point = self.point(points[at]);
+                return Err(missing(&format!("`{name}` is {} at {point}", own[at])));
             }
         }
         Ok(())
@@ -437,7 +447,7 @@ impl Stage {
                         true => self.derivative_in_x(trajectory, column, *point, of),
                         false => self.at(trajectory, [column, of(column)], (number, *point)),
                     }
-                    .ok_or_else(|| ended_early(trajectory))?;
+                    .ok_or_else(|| self.not_reached(*point))?;
                 }
             }
         }
@@ -521,17 +531,12 @@ impl Stage {
             } else {
                 for (value, (number, &time)) in out.iter_mut().zip(points.iter().enumerate()) {
                     let found = self.at(trajectory, [column, column], (number, time));
-                    *value = found.ok_or_else(|| ended_early(trajectory))?;
+                    *value = found.ok_or_else(|| self.not_reached(time))?;
                 }
             }
         }
         self.refuse_not_finite(out)
     }
-}
-
-/// The model has ended the simulation before the last point.
-fn ended_early(trajectory: &Trajectory) -> Failed {
-    Failed { at: trajectory.time().last().copied(), ..missing("the model ended the simulation") }
 }
 
 /// The points could not be read.

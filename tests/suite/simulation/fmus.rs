@@ -474,7 +474,10 @@ fn missing_values_and_early_ends_are_said() {
             let said = one_line(&errors).contains("`unit.fmu` ended the simulation at 0.");
             assert!(code == 0 && said && errors.contains("before 2 s"), "{errors}");
         }
-        for (fault, said) in [(NO_OUTPUT, "`y` is NaN"), (END, "ended the simulation")] {
+        for (fault, said) in [
+            (NO_OUTPUT, "`y` is NaN at 0.6 s"),
+            (END, "the model ended the simulation before 0.7 s"),
+        ] {
             let entry = format!("integrator = \"co-simulation\"\nset = {{ fault = {fault} }}\n");
             fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
             let (_, out, errors) = gapi(&here, &["identify", "p.toml", "--allow-external"]);
