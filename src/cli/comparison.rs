@@ -6,6 +6,7 @@ use super::identify::{Ended, solve_one};
 use super::options::Global;
 use super::output::RESULTS;
 use super::terminal;
+use crate::script::access::faults::cannot;
 use gapilib_identify::problem::Solution;
 use gapilib_identify::problem::inference::{Comparison, compare};
 use std::path::{Path, PathBuf};
@@ -59,8 +60,8 @@ fn write(comparison: &Comparison, folder: &Path) -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(error) => {
-            let path = path.display();
-            terminal::eprint(&format!("error: `{path}` cannot be written: {error}\n"));
+            let message = cannot("write", &path, &error).message;
+            terminal::eprint(&format!("error: {message}\n"));
             ExitCode::FAILURE
         }
     }

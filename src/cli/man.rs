@@ -1,6 +1,7 @@
 //! `gapi man`: the manual pages of the program and its commands.
 
 use super::terminal;
+use crate::script::access::faults::cannot;
 use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,9 @@ pub(super) fn man(arguments: &ManArgs, gapi: clap::Command) -> ExitCode {
     match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            terminal::eprint(&format!("error: the manual pages cannot be written: {error}\n"));
+            let folder = arguments.out.as_deref().unwrap_or(Path::new("."));
+            let message = cannot("write to", folder, &error).message;
+            terminal::eprint(&format!("error: the manual pages are not written: {message}\n"));
             ExitCode::FAILURE
         }
     }

@@ -5,6 +5,7 @@ use super::session;
 use crate::diag::{Diagnostic, Fault};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
+use crate::script::access::faults::cannot;
 use crate::script::access::policy::Grant;
 use crate::script::runs::problem::{Draft, DraftOptions, Question, draft};
 use crate::source::Span;
@@ -124,10 +125,8 @@ fn answered(
 }
 
 fn write(session: &mut Session, output: &Path, draft: Draft) -> Result<(), Vec<Diagnostic>> {
-    session.world.write(output, draft.text.as_bytes()).map_err(|error| {
-        let message = format!("`{}` cannot be written: {error}", output.display());
-        vec![Fault::new(BAD_OPTION, message).at(Span::NONE)]
-    })?;
+    let written = session.world.write(output, draft.text.as_bytes());
+    written.map_err(|error| vec![cannot("write", output, &error).at(Span::NONE)])?;
     let name = output.display();
     session.print(&format!("written to {name}\n"));
     match draft.incomplete {

@@ -1,5 +1,6 @@
 //! `gapi run --parse-only`: which scripts can be read.
 
+use crate::script::access::faults::cannot;
 use crate::script::language::parsing;
 use crate::script::language::parsing::Reading;
 use crate::source::SourceMap;
@@ -19,7 +20,8 @@ pub(super) fn parse_only(paths: &[PathBuf]) -> ExitCode {
             Ok(bytes) => bytes,
             Err(error) => {
                 rejected += 1;
-                terminal::eprint(&format!("error: cannot read `{}`: {error}\n", path.display()));
+                let message = cannot("read", &path, &error).message;
+                terminal::eprint(&format!("error: {message}\n"));
                 continue;
             }
         };

@@ -7,6 +7,7 @@ use super::world::SystemWorld;
 use super::{output, session, terminal};
 use crate::diag::Fault;
 use crate::script::Session;
+use crate::script::access::faults::cannot;
 use crate::script::access::policy::Grant;
 use crate::script::runs::problem::{read_shards, solve};
 use crate::source::Span;
@@ -107,8 +108,5 @@ fn draw(session: &mut Session, folder: &Path, page: Option<&Path>) -> Result<(),
 
 fn write(session: &mut Session, page: &Path, solution: &Solution) -> Result<(), Fault> {
     let written = session.world.write(page, solution.html().as_bytes());
-    written.map_err(|error| {
-        let message = format!("`{}` cannot be written: {error}", page.display());
-        Fault::new(crate::registry::BAD_OPTION, message)
-    })
+    written.map_err(|error| cannot("write", page, &error))
 }

@@ -5,6 +5,7 @@ use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
+use crate::script::access::faults::cannot;
 use crate::script::access::policy::Grant;
 use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
@@ -166,7 +167,7 @@ fn write_transcript(
     session
         .world
         .write(&start.join(path), text.as_bytes())
-        .map_err(|error| format!("error: `{}` cannot be written: {error}\n", path.display()))
+        .map_err(|error| format!("error: {}\n", cannot("write", path, &error).message))
 }
 
 /// A transcript does not say where it was made.

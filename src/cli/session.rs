@@ -4,7 +4,7 @@ use super::options::{ALL_LIBRARIES, EVERYWHERE, Global};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{cache_folder, translations};
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{Diagnostic, Fault, suggest};
 use crate::name::Name;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
@@ -153,7 +153,15 @@ pub(super) fn with_class(
     // The only class of the files need not be named.
     let only = if let [only] = &names[..] { Some(only.to_string()) } else { None };
     let class = class.or(only).ok_or_else(|| {
-        terminal::eprint("error: which class?\n = help: write its name, or `--model CLASS`\n");
+        let names: Vec<String> = names.iter().map(Name::to_string).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let known = match names.as_slice() {
+            [] => String::new(),
+            names => format!(": the files define {}", suggest::listed(names)),
+        };
+        terminal::eprint(&format!(
+            "error: which class?\n = help: write its name, or `--model CLASS`{known}\n"
+        ));
         ExitCode::from(2)
     })?;
     Ok((session, class))

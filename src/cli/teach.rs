@@ -6,6 +6,7 @@ use super::output::{RESULTS, latest_of, shown};
 use super::teach_run::{Again, Change, Recording, RunArgs, Running, Trouble, output, read};
 use super::teach_screen::{self, Source};
 use super::terminal::{self, Terminal};
+use crate::script::access::faults::cannot;
 use crate::script::world::Screen as _;
 use clap::{Args, ValueHint};
 use gapilib_script::teach::bands::{self, Repeated};
@@ -194,9 +195,8 @@ fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Trouble> {
-    disk::write_beside(file, text.as_bytes()).map_err(|error| {
-        Trouble::Message(format!("`{}` cannot be written: {error}", file.display()))
-    })
+    disk::write_beside(file, text.as_bytes())
+        .map_err(|error| Trouble::Message(cannot("write", file, &error).message))
 }
 
 /// What the run would have been with the change that was asked for, if one was.

@@ -2,6 +2,7 @@
 //! prompts have.
 
 use super::record::Record;
+use crate::script::access::faults::cannot;
 use crate::script::access::policy::Grant;
 use crate::script::models::{checking, simulation};
 use crate::script::{Dialect, RunStatus, Session, builtins};
@@ -120,7 +121,7 @@ impl Dialogue {
         let folder = if folder.is_empty() { "." } else { folder.trim_matches('"') };
         match session.world.list_dir(&session.world.absolute(Path::new(folder))) {
             Ok(names) => names.iter().for_each(|name| terminal::print(&format!("{name}\n"))),
-            Err(error) => self.refuse(&format!("cannot list `{folder}`: {error}")),
+            Err(error) => self.refuse(&cannot("list", Path::new(folder), &error).message),
         }
     }
 
@@ -214,7 +215,7 @@ impl Dialogue {
                 self.saved = Some(path);
                 terminal::print(&format!("saved to {file}\n"));
             }
-            Err(error) => self.refuse(&format!("`{file}` cannot be written: {error}")),
+            Err(error) => self.refuse(&cannot("write", Path::new(file), &error).message),
         }
     }
 

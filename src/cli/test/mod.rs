@@ -13,6 +13,7 @@ use super::options::{Freedom, Global};
 use super::pool::{self, Ended, Watch};
 use super::terminal::{self, Terminal};
 use crate::diag::visible;
+use crate::script::access::faults::cannot;
 use crate::script::language::expectation::shown;
 use crate::script::world::Screen as _;
 use clap::{Args, ValueHint};
@@ -175,7 +176,7 @@ fn conclude(results: &[Tested], arguments: &TestArgs) -> ExitCode {
     if let Some(file) = &arguments.junit
         && let Err(error) = disk::write_named(file, junit::report(results).as_bytes())
     {
-        terminal::eprint(&format!("error: cannot write `{}`: {error}\n", file.display()));
+        terminal::eprint(&format!("error: {}\n", cannot("write", file, &error).message));
         return ExitCode::FAILURE;
     }
     if good == tested && tested > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }

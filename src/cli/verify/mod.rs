@@ -12,6 +12,7 @@ use crate::disk::list_named;
 use crate::name::Name;
 use crate::results::{self, Compared};
 use crate::script::Session;
+use crate::script::access::faults::cannot;
 use crate::script::access::policy::Grant;
 use crate::script::models::verification;
 use crate::script::models::verification::{Reference, Stage, Stuck};
@@ -84,8 +85,8 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
     let cases = match cases::find(references, filter, &classes) {
         Ok(cases) => cases,
         Err(error) => {
-            let folder = arguments.references.display();
-            terminal::eprint(&format!("error: `{folder}` cannot be read: {error}\n"));
+            let message = cannot("read", &arguments.references, &error).message;
+            terminal::eprint(&format!("error: {message}\n"));
             return ExitCode::FAILURE;
         }
     };
@@ -197,12 +198,7 @@ type Judged = Result<Result<(bool, Vec<Compared>), Stuck>, Fault>;
 /// The reference of a case and the signals to compare.
 fn reference(case: &Case) -> Result<Option<(results::ResultTable, Vec<String>)>, Fault> {
     let Some(path) = &case.reference else { return Ok(None) };
-    let read = |path: &Path| {
-        super::named::read(path).map_err(|error| {
-            let text = format!("`{}` cannot be read: {error}", path.display());
-            Fault::new(crate::script::errors::FILE_ERROR, text)
-        })
-    };
+    let read = |path: &Path| super::named::read(path).map_err(|error| cannot("read", path, &error));
     if case.is_sampled() {
         let table = results::read_sampled(&String::from_utf8_lossy(&read(path)?))?;
         return Ok(table.map(|table| {

@@ -55,31 +55,23 @@ impl Solution {
 
     /// Says first that columns may be read wrongly, where several estimates lie at ends.
     pub(super) fn doubt_columns(&mut self) {
-        if self.at_ends().len() >= SEVERAL && self.has_pattern() {
-            self.put_columns_first();
-        }
-    }
-
-    fn put_columns_first(&mut self) {
         let at_ends = self.at_ends();
+        if at_ends.len() < SEVERAL || !self.has_pattern() {
+            return;
+        }
         let torn = self.findings.iter().filter(|own| is_pattern(own)).flat_map(|own| &own.series);
         let mut torn: Vec<&str> = torn.map(String::as_str).collect();
         torn.dedup();
-        let where_they_lie = match at_ends.len() {
-            1 => "lies at an end of its range",
-            _ => "lie at ends of their ranges",
-        };
         let sentence = format!(
-            "{} {where_they_lie}, and the residuals of {} are not random: first check how the data are \
-             read, that is the unit of {}, and unit and sign of the columns of outputs and inputs. \
-             Until then neither the ranges nor the intervals say anything.",
+            "{} lie at ends of their ranges, and the residuals of {} are not random: first check how the \
+             data are read, that is the unit of {}, and unit and sign of the columns of outputs and \
+             inputs. Until then neither the ranges nor the intervals say anything.",
             suggest::listed(&at_ends),
             torn.join(", "),
             abscissas(&self.series)
         );
         let finding = Finding::new(FindingKind::Misread, sentence).severity(Severity::Serious);
         let finding = finding.parameters(at_ends);
-        self.findings.iter_mut().for_each(range_notes::leave_out_remedy);
         self.findings.insert(0, finding);
     }
 
@@ -105,8 +97,15 @@ impl Solution {
         let best = known.clone().map(|(_, found)| found).fold(f64::NEG_INFINITY, f64::max);
         // A fit that is worse than a constant explains nothing, however bad the other one is.
         let is_better = best > 0.0 && 1.0 - best < FAR_BETTER * (1.0 - own);
-        if is_better && !self.may_be_misread() {
-            self.put_columns_first();
+        if is_better && self.may_be_misread() {
+            self.findings.iter_mut().for_each(range_notes::leave_out_remedy);
+        } else if is_better {
+            // With one parameter at an end, another unit may explain no more than a wider range.
+            let sentence = "The data may also be read wrongly.";
+            let finding = Finding::new(FindingKind::Misread, sentence).severity(Severity::Serious);
+            let is_range = |own: &&Finding| own.kind == FindingKind::AtBound;
+            let place = self.findings.iter().take_while(is_range).count();
+            self.findings.insert(place, finding);
         }
         let own_finding = self.findings.iter_mut().find(|own| own.kind == FindingKind::Misread);
         let Some(finding) = own_finding.filter(|_| count > 0) else { return };

@@ -51,8 +51,8 @@ fn verdict(view: &View) -> Markup {
     html! {
         strong class=(view.ending.class) { (view.ending.sentence) } " "
         @if view.solution.may_be_misread() {
-            "Several parameters lie at ends of their ranges and the residuals have a pattern: check the "
-            "units and the signs of the data before anything is said of the parameters."
+            "Parameters lie at ends of their ranges and the residuals have a pattern: check the ranges, "
+            "and the units and the signs of the data, before anything is said of the parameters."
         } @else if judged.is_empty() {
             "Standard errors are not available, so there is no statement on identifiability."
         } @else if identifiable == parameters.len() {

@@ -12,6 +12,9 @@ pub fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
         return refused(refusal, path);
     }
     let reason = match error.kind() {
+        io::ErrorKind::NotFound if verb == "write" => {
+            "its folder does not exist; make it first".to_owned()
+        }
         io::ErrorKind::NotFound => "it does not exist".to_owned(),
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         io::ErrorKind::IsADirectory => "it is a directory".to_owned(),

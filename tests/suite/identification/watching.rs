@@ -101,7 +101,7 @@ fn changes_that_cannot_be_are_refused_and_the_run_continues() {
         ("garbage (", "error"),
         ("f := 0.5", "did you mean `F`?"),
         ("F_Mut := 0.5", "the script has no variable `F_Mut`"),
-        ("F := 0,5", "numbers are written with a point"),
+        ("F := 0,5", "numbers have a decimal point"),
         ("F := \"much\"", "`F` is a Real"),
         ("F := {0.5, 0.5}", "`F` is a"),
         ("F := 0.5; x := \"much\"", "`x` is a Real"),
