@@ -203,13 +203,6 @@ pub const LOG_CATEGORIES: &[(&str, &str)] = &[
     ("logEvents", "Events that were handled"),
 ];
 
-/// The tolerance of the description is that of the model times this: integrators of importers hold to it
-/// step by step. FMPy's gives five of 35 examples of the standard library, with the tolerance of their
-/// models, curves that are off by 0.3 to 8 % of their maximum.
-const STRICTER: f64 = 1e-2;
-/// Tolerances below this are left to models that ask for them.
-const STRICTEST: f64 = 1e-9;
-
 fn describe(
     model: &Model,
     version: Version,
@@ -257,7 +250,7 @@ fn describe(
         experiment: DefaultExperiment {
             start: Some(start),
             stop: Some(experiment.stop_time.unwrap_or(start + 1.0)),
-            tolerance: Some((content.tolerance * STRICTER).max(STRICTEST).min(content.tolerance)),
+            tolerance: Some(content.tolerance),
             step: experiment.interval.filter(|step| *step > 0.0),
         },
         variables: table.variables.iter().map(|(variable, _)| variable.clone()).collect(),

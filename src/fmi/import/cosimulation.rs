@@ -152,7 +152,7 @@ impl<'a> CoSimulation<'a> {
         let t = self.run.time;
         let component = self.run.component;
         let is_new = out.time().last() != Some(&t);
-        if self.has_event_mode && (self.needs_event || self.run.inputs.changes_piece(t)) {
+        if self.has_event_mode && (self.needs_event || self.run.inputs.jump(t)) {
             self.needs_event = false;
             self.run.statistics.time_events += 1;
             if is_new {

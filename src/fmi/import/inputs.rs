@@ -95,9 +95,9 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Whether other pieces hold from `t` on than until then.
-    pub fn changes_piece(&self, t: f64) -> bool {
-        self.followed.iter().any(|input| input.piece != input.piece_at(t))
+    /// Whether an input jumps at `t`; a bend is no event.
+    pub fn jump(&self, t: f64) -> bool {
+        self.followed.iter().any(|input| input.jumps(t))
     }
 
     /// When the next piece of an input begins.
@@ -161,6 +161,16 @@ impl Followed<'_> {
         times.partition_point(|time| *time <= t || same_time(*time, t)).checked_sub(1)
     }
 
+    /// Whether the next piece begins at `t` with another value, or several pieces at once.
+    fn jumps(&self, t: f64) -> bool {
+        let next = self.piece_at(t);
+        let count = |piece: Option<usize>| piece.map_or(0, |piece| piece + 1);
+        match self.is_held {
+            true => self.value_in(self.piece, t) != self.value_in(next, t),
+            false => count(next) > count(self.piece) + 1,
+        }
+    }
+
     /// The value at a time, in the piece that holds now.
     fn value(&self, t: f64) -> f64 {
         self.value_in(self.piece, t)
@@ -213,6 +223,18 @@ mod tests {
 
     fn value(samples: &Samples, seek: f64, t: f64) -> f64 {
         at(samples, seek).value(t)
+    }
+
+    #[test]
+    fn bends_are_no_jumps() {
+        let place = Place { variable: 0, element: 0 };
+        let (times, values) = (vec![1.0, 2.0, 3.0, 3.0], vec![10.0, 20.0, 20.0, 0.0]);
+        let samples = Samples { place, times, values, is_held: false };
+        let jumps = |samples: &Samples, seek: f64, t: f64| at(samples, seek).jumps(t);
+        assert!(!jumps(&samples, 0.0, 1.0) && !jumps(&samples, 1.0, 2.0));
+        assert!(jumps(&samples, 2.0, 3.0) && !jumps(&samples, 3.0, 4.0));
+        let held = Samples { is_held: true, ..samples };
+        assert!(!jumps(&held, 0.0, 1.0) && jumps(&held, 1.0, 2.0) && jumps(&held, 2.0, 3.0));
     }
 
     #[test]

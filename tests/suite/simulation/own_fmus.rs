@@ -114,6 +114,8 @@ fn inputs_of_co_simulation_have_their_mean() {
         for (t, u) in column(&all, "time").iter().zip(column(&all, "u")) {
             near(*u, 1.0 - (t - 1.0).abs(), 1e-9);
         }
+        let mut rows = column(&all, "time").windows(2);
+        assert_eq!(rows.all(|pair| pair[1] > pair[0]), is_noted, "a bend is no event of steps");
         for (row, t) in column(&all, "time").iter().enumerate() {
             let x = if *t < 1.0 { t * t / 2.0 } else { 1.0 - (2.0 - t).powi(2) / 2.0 };
             near(column(&all, "x")[row], x, 1e-6);
@@ -129,7 +131,8 @@ const MODES: &str = "model Heater type Mode = enumeration(off \"no heat\", on); 
                      parameter Integer n = 2; parameter Real c = 1 annotation(Evaluate = true); \
                      final parameter Integer m = 3; Real x[n](each start = 0, each fixed = true); \
                      Real z[m]; output Boolean hot = mode == Mode.on; equation z = fill(c, m); \
-                     der(x) = fill(if mode == Mode.on then 1 else 0, n); end Heater;";
+                     der(x) = fill(if mode == Mode.on then 1 else 0, n); \
+                     annotation(experiment(Tolerance = 1e-5)); end Heater;";
 
 /// Columns with literals of an enumeration are inputs of models and of units.
 #[test]
@@ -181,6 +184,7 @@ fn an_export_says_what_is_constant() {
         let archive = Archive::read(unit).expect("readable");
         let text = archive.file("modelDescription.xml").expect("a description");
         let description = description::read(text).expect("valid");
+        assert_eq!(description.experiment.tolerance, Some(1e-5));
         let items = &description.types[0].items;
         assert_eq!(items[0].description.as_deref(), Some("no heat"));
         assert_eq!(items[1].description, None);
