@@ -7,7 +7,7 @@ use super::interpolation;
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
-use crate::identify::problem::{Reading, Run, Solution, short_fit};
+use crate::identify::problem::{Finding, FindingKind, Reading, Run, Solution, short_fit};
 
 /// Times in minutes, hours and milliseconds that are read as seconds.
 const TIMES: [(f64, &str); 3] = [(60.0, "minutes"), (3600.0, "hours"), (1e-3, "milliseconds")];
@@ -41,7 +41,11 @@ impl Doubts {
         again: &mut Again<'_>,
     ) -> Result<(), Fault> {
         interpolation::try_others(session, (run, solution), &self.undecided, again)?;
-        try_readings(session, solution, &self.readings, again)
+        run.evaluation.show_by(session.world.status());
+        let tried = try_readings(session, (run, solution), &self.readings, again);
+        run.evaluation.show("");
+        run.evaluation.show_by(None);
+        tried
     }
 }
 
@@ -147,11 +151,11 @@ impl Changed {
 /// Those of the simulators' maker.
 fn try_readings(
     session: &mut Session,
-    solution: &mut Solution,
+    (run, solution): (&Run, &mut Solution),
     changes: &[Changed],
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if !solution.is_doubtful() {
+    if !solution.is_doubtful() || session.world.interrupted() {
         return Ok(());
     }
     let [fewest, most] = EVALUATIONS;
@@ -159,6 +163,7 @@ fn try_readings(
     let rows = solution.series.iter().map(|series| series.points.len() as u64).max();
     let most_steps = STEPS + STEPS_PER_ROW * rows.unwrap_or(0);
     let mut readings = Vec::new();
+    run.evaluation.show("columns read otherwise");
     for changed in changes {
         let change = |file: &mut ProblemFile| changed.apply(file, most_steps);
         // A column that cannot be read so is no explanation.
@@ -169,7 +174,10 @@ fn try_readings(
         let (r_squared, simulations) = short_fit(other.problem, evaluations, &processors, flag)?;
         solution.effort.simulations_for_statistics += simulations;
         if session.world.interrupted() {
-            return Ok(());
+            let sentence =
+                "Not all other readings of the columns were tried: the run was stopped before.";
+            solution.findings.push(Finding::new(FindingKind::Missing, sentence));
+            break;
         }
         readings.push(Reading { words: changed.words(), r_squared });
     }
