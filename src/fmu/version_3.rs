@@ -310,45 +310,34 @@ states!(
     fmi3DeserializeFMUState
 );
 
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetDirectionalDerivative(
-    instance: *mut c_void,
-    unknowns: *const u32,
-    n_unknowns: usize,
-    knowns: *const u32,
-    n_knowns: usize,
-    seed: *const f64,
-    n_seed: usize,
-    sensitivity: *mut f64,
-    n_sensitivity: usize,
-) -> c_int {
-    call(instance, "fmi3GetDirectionalDerivative", |handle| {
-        let (unknowns, knowns) = (slice(unknowns, n_unknowns)?, slice(knowns, n_knowns)?);
-        let seed = slice(seed, same(n_seed, n_knowns)?)?;
-        let out = slice_mut(sensitivity, same(n_sensitivity, n_unknowns)?)?;
-        handle.instance.along((unknowns, knowns), seed, out)
-    })
+/// Declares a function of derivatives: `$seeds` and `$results` are the numbers of values that it takes and
+/// gives.
+macro_rules! derivatives {
+    ($name:ident, $run:ident, ($n_unknowns:ident, $n_knowns:ident), $seeds:ident, $results:ident) => {
+        #[unsafe(no_mangle)]
+        extern "C" fn $name(
+            instance: *mut c_void,
+            unknowns: *const u32,
+            $n_unknowns: usize,
+            knowns: *const u32,
+            $n_knowns: usize,
+            seed: *const f64,
+            n_seed: usize,
+            sensitivity: *mut f64,
+            n_sensitivity: usize,
+        ) -> c_int {
+            call(instance, stringify!($name), |handle| {
+                let (unknowns, knowns) = (slice(unknowns, $n_unknowns)?, slice(knowns, $n_knowns)?);
+                let seed = slice(seed, same(n_seed, $seeds)?)?;
+                let out = slice_mut(sensitivity, same(n_sensitivity, $results)?)?;
+                handle.instance.$run((unknowns, knowns), seed, out)
+            })
+        }
+    };
 }
 
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetAdjointDerivative(
-    instance: *mut c_void,
-    unknowns: *const u32,
-    n_unknowns: usize,
-    knowns: *const u32,
-    n_knowns: usize,
-    seed: *const f64,
-    n_seed: usize,
-    sensitivity: *mut f64,
-    n_sensitivity: usize,
-) -> c_int {
-    call(instance, "fmi3GetAdjointDerivative", |handle| {
-        let (unknowns, knowns) = (slice(unknowns, n_unknowns)?, slice(knowns, n_knowns)?);
-        let seed = slice(seed, same(n_seed, n_unknowns)?)?;
-        let out = slice_mut(sensitivity, same(n_sensitivity, n_knowns)?)?;
-        handle.instance.backwards((unknowns, knowns), seed, out)
-    })
-}
+derivatives!(fmi3GetDirectionalDerivative, along, (n_unknowns, n_knowns), n_knowns, n_unknowns);
+derivatives!(fmi3GetAdjointDerivative, backwards, (n_unknowns, n_knowns), n_unknowns, n_knowns);
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi3UpdateDiscreteStates(

@@ -1,9 +1,8 @@
 //! Simulations with given values that return values: once, or once for each row of values.
 
+use super::inputs;
 use super::linearization::write_dslin;
-use super::simulation::{
-    Request, Simulable, is_model, result_path, simulation_header, to_simulate,
-};
+use super::simulation::{Request, Simulable, is_model, result_path, to_simulate};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
@@ -28,21 +27,11 @@ pub(super) const FAMILY: Family = Family {
 /// What stands among the initial names where the models are linearized too.
 pub(super) const LINEARIZE: &str = "linearize:";
 
-/// A header whose inputs begin with those of `simulateModel` and `initialNames`.
-macro_rules! header {
-    ($name:literal, $description:literal, $rest:literal) => {
-        simulation_header!(
-            $name,
-            $description,
-            "  input String initialNames[:] = fill(\"\", 0) \"parameters, and states or variables with a start value; linearize: for the number of a file dslin<number>.mat\";\n",
-            $rest
-        )
-    };
-}
-
-const SIMULATE_EXTENDED_MODEL: &str = header!(
+const SIMULATE_EXTENDED_MODEL: &str = inputs::header!(
     "simulateExtendedModel",
     "Simulates a model with given parameter and start values and returns final values.",
+    inputs::simulation!(),
+    inputs::initial_names!(),
     r#"  input Real initialValues[:] = fill(0.0, 0) "their values";
   input String finalNames[:] = fill("", 0) "variables whose final values are returned";
   input Boolean autoLoad = true "has no effect: nothing is plotted";
@@ -66,9 +55,11 @@ fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Valu
     Ok(Value::Tuple(vec![true.into(), last_values(&simulated.table, &finals)?.into()]))
 }
 
-const SIMULATE_MULTI_EXTENDED_MODEL: &str = header!(
+const SIMULATE_MULTI_EXTENDED_MODEL: &str = inputs::header!(
     "simulateMultiExtendedModel",
     "Simulates a model once for each row of parameter and start values and returns final values.",
+    inputs::simulation!(),
+    inputs::initial_names!(),
     r#"  input Real initialValues[:, :] = fill(0.0, 0, 0) "one row for each simulation";
   input String finalNames[:] = fill("", 0) "variables whose final values are returned";
   output Boolean ok;
@@ -91,9 +82,11 @@ fn simulate_multi_extended_model(session: &mut Session, mut args: Args) -> Resul
     Ok(Value::Tuple(vec![ok.into(), RealMatrix { rows, columns, elements }.into()]))
 }
 
-const SIMULATE_MULTI_RESULTS_MODEL: &str = header!(
+const SIMULATE_MULTI_RESULTS_MODEL: &str = inputs::header!(
     "simulateMultiResultsModel",
     "Simulates a model once for each row of parameter and start values and returns trajectories.",
+    inputs::simulation!(),
+    inputs::initial_names!(),
     r#"  input Real initialValues[:, :] = fill(0.0, 0, 0) "one row for each simulation";
   input String resultNames[:] = fill("", 0) "variables whose trajectories are returned";
   output Boolean ok;

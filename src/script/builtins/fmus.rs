@@ -1,6 +1,7 @@
 //! Commands that write models as functional mock-up units, and that import units.
 
 use super::imported_units;
+use super::inputs;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::Fault;
 use crate::errors::BAD_ARGUMENT;
@@ -93,12 +94,9 @@ fn translate_model_fmu(session: &mut Session, mut args: Args) -> Result<Value, F
 /// A header of OpenModelica with these defaults.
 macro_rules! build_header {
     ($name:literal, $description:literal, $platforms:literal) => {
-        concat!(
-            "function ",
+        inputs::header!(
             $name,
-            " \"",
             $description,
-            "\"\n",
             r#"  input TypeName className;
   input String version = "2.0" "2.0 or 3.0";
   input String fmuType = "me" "me, cs, me_cs";
@@ -107,10 +105,7 @@ macro_rules! build_header {
             $platforms,
             r#"  input Boolean includeResources = false "has no effect: tables of files are part of the model";
   output String generatedFileName "empty if it could not be written";
-"#,
-            "end ",
-            $name,
-            ";\n"
+"#
         )
     };
 }

@@ -1,4 +1,35 @@
-//! Lines that several headers of commands have in common, for `concat!`.
+//! Headers of commands, and lines that several have in common.
+
+/// The header of a function with these lines.
+macro_rules! header {
+    ($name:literal, $description:literal, $($lines:tt)+) => {
+        concat!("function ", $name, " \"", $description, "\"\n", $($lines)+, "end ", $name, ";\n")
+    };
+}
+
+/// What `simulateModel` and its relatives are asked for.
+macro_rules! simulation {
+    () => {
+        r#"  input String problem = "" "Class or Class(modification); empty: the model used last";
+  input Real startTime = 0.0 "s" annotation(optional = true);
+  input Real stopTime = 1.0 "s" annotation(optional = true);
+  input Integer numberOfIntervals = 500 annotation(optional = true);
+  input Real outputInterval = 0.0 "s; used if numberOfIntervals is 0 or not given" annotation(optional = true);
+  input String method = "Dassl" annotation(optional = true);
+  input Real tolerance = 0.0001 "relative" annotation(optional = true);
+  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
+  input String resultFile = "dsres" ".mat is added if the name has no extension";
+"#
+    };
+}
+
+/// What its relatives set.
+macro_rules! initial_names {
+    () => {
+        r#"  input String initialNames[:] = fill("", 0) "parameters, and states or variables with a start value; linearize: for the number of a file dslin<number>.mat";
+"#
+    };
+}
 
 /// The seed of a call that draws random numbers.
 macro_rules! seed {
@@ -45,4 +76,4 @@ macro_rules! variables {
     };
 }
 
-pub(super) use {model, next_seed, ranges, seed, variables};
+pub(super) use {header, initial_names, model, next_seed, ranges, seed, simulation, variables};

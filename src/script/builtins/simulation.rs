@@ -1,6 +1,7 @@
 //! Translating and simulating models.
 
 use super::imported_units::{self, ImportedUnit};
+use super::inputs;
 use super::methods::with_method_of_ours;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
@@ -129,37 +130,10 @@ fn grid(experiment: &flatten::Experiment, options: &SimulationOptions) -> Result
     Ok((0..).map_while(point).collect())
 }
 
-/// A header whose inputs begin with those of `simulateModel`.
-macro_rules! simulation_header {
-    ($name:literal, $description:literal, $($rest:literal),+) => {
-        concat!(
-            "function ",
-            $name,
-            " \"",
-            $description,
-            "\"\n",
-            r#"  input String problem = "" "Class or Class(modification); empty: the model used last";
-  input Real startTime = 0.0 "s" annotation(optional = true);
-  input Real stopTime = 1.0 "s" annotation(optional = true);
-  input Integer numberOfIntervals = 500 annotation(optional = true);
-  input Real outputInterval = 0.0 "s; used if numberOfIntervals is 0 or not given" annotation(optional = true);
-  input String method = "Dassl" annotation(optional = true);
-  input Real tolerance = 0.0001 "relative" annotation(optional = true);
-  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
-  input String resultFile = "dsres" ".mat is added if the name has no extension";
-"#,
-            $($rest,)+
-            "end ",
-            $name,
-            ";\n"
-        )
-    };
-}
-pub(super) use simulation_header;
-
-const SIMULATE_MODEL: &str = simulation_header!(
+const SIMULATE_MODEL: &str = inputs::header!(
     "simulateModel",
     "Simulates a model, after translation if necessary. Defaults come from the model's experiment annotation.",
+    inputs::simulation!(),
     "  output Boolean ok;\n"
 );
 
