@@ -68,11 +68,11 @@ fn grant_asked(session: &mut Session, global: &Global) {
     }
     for library in &global.allow_external {
         let is_path = Path::new(library).components().count() > 1;
-        session.world.grant(match library.as_str() {
-            ALL_LIBRARIES => Grant::ExternalCode(None),
-            path if is_path => Grant::ExternalFile(Path::new(path)),
-            name => Grant::ExternalCode(Some(name)),
-        });
+        match library.as_str() {
+            ALL_LIBRARIES => session.world.grant(Grant::ExternalCode(None)),
+            path if is_path => session.world.grant(Grant::ExternalFile(Path::new(path))),
+            name => session.world.grant(Grant::ExternalCode(Some(name))),
+        }
     }
     for folder in &global.deny_read {
         session.world.grant(Grant::Deny(folder));
