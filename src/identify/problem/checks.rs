@@ -42,6 +42,8 @@ const CROSSES: f64 = 2.0;
 const LISTED: usize = 10;
 /// Outliers are farther from the fit than this many standard deviations of the others.
 const FAR: f64 = 2.0;
+/// Standard errors that are too small by more than this factor: the residuals are no noise to speak of.
+const STRONG: f64 = 2.0;
 /// So many outliers are a distribution.
 const MANY: usize = 3;
 
@@ -338,7 +340,9 @@ fn bias(
 /// `left_out`: the outliers that the test does not count, unlike the line of the series.
 fn correlated(own: &Own<'_>, (test, left_out): (&ResidualTest, usize), alpha: f64) -> Finding {
     let rho = test.autocorrelation;
-    let factor = significant(((1.0 + rho.abs()) / (1.0 - rho.abs()).max(0.01)).sqrt(), 2);
+    let factor = ((1.0 + rho.abs()) / (1.0 - rho.abs()).max(0.01)).sqrt();
+    let is_strong = rho > 0.0 && factor > STRONG;
+    let factor = significant(factor, 2);
     let numbers = format!(
         "lag-1 autocorrelation {}, {} of the same sign, {} expected",
         significant(rho, 2),
@@ -363,7 +367,9 @@ fn correlated(own: &Own<'_>, (test, left_out): (&ResidualTest, usize), alpha: f6
             own.label
         )
     };
+    let severity = if is_strong { Severity::Serious } else { Severity::Warning };
     Finding::new(FindingKind::Autocorrelation, sentence)
+        .severity(severity)
         .series(&own.label)
         .statistic(test.runs_probability.min(test.autocorrelation_probability), alpha)
 }

@@ -4,6 +4,7 @@ use super::{EndingKind, ScriptError, Solution, SolvedParameter, SolvedSeries, Ve
 use crate::Descriptions;
 use crate::plot::{self, Comparison, Figure};
 use crate::table::{counted, digits_of, ends, quoted, significant};
+use serde::Serialize;
 use std::fmt::Write;
 
 /// How many causes of failure are shown.
@@ -12,6 +13,16 @@ const CAUSES: usize = 5;
 const BRIEF_DIGITS: usize = 10;
 const HEADING: [&str; 7] =
     ["parameter", "value", "unit", "standard error", "95 % interval", "range", ""];
+
+/// What `result.json` holds.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    solution: &'a Solution,
+    /// What the verdicts assume although the residuals contradict it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verdicts_assume: Option<&'static str>,
+}
 
 impl Solution {
     /// The report that ends a run.
@@ -193,7 +204,8 @@ impl Solution {
 
     /// `result.json`.
     pub fn to_json(&self) -> String {
-        let text = serde_json::to_string_pretty(self);
+        let document = Document { solution: self, verdicts_assume: self.assumption() };
+        let text = serde_json::to_string_pretty(&document);
         text.unwrap_or_else(|error| unreachable!("strings, numbers and lists only: {error}")) + "\n"
     }
 

@@ -49,15 +49,23 @@ fn verdict(view: &View) -> Markup {
     let judged: Vec<Verdict> = parameters.iter().filter_map(|p| p.verdict).collect();
     let identifiable = judged.iter().filter(|v| **v == Verdict::Identifiable).count();
     html! {
+        @if view.solution.has_strong_pattern() {
+            strong.bad {
+                "The model does not describe these data within their noise: the residuals have a "
+                "pattern."
+            }
+            " "
+        }
         strong class=(view.ending.class) { (view.ending.sentence) } " "
         @if view.solution.may_be_misread() {
-            "Parameters lie at ends of their ranges and the residuals have a pattern: check the ranges, "
-            "and the units and the signs of the data, before anything is said of the parameters."
+            "The data may be read wrongly: check the units and the signs of the data, and the ranges, "
+            "before anything is said of the parameters."
         } @else if judged.is_empty() {
             "Standard errors are not available, so there is no statement on identifiability."
         } @else if identifiable == parameters.len() {
-            @if identifiable == 1 { "The parameter is identifiable from these data." }
-            @else { "All " (identifiable) " parameters are identifiable from these data." }
+            @if identifiable == 1 { "The parameter is" }
+            @else { "All " (identifiable) " parameters are" }
+            " identifiable from these data" (condition(view)) "."
         } @else {
             (identifiable) " of " (parameters.len())
             @if parameters.len() == 1 { " parameter is " } @else { " parameters are " }
@@ -66,10 +74,12 @@ fn verdict(view: &View) -> Markup {
     }
 }
 
-/// What the statement on the others depends on.
+/// What the statement depends on.
 fn condition(view: &View) -> String {
-    match view.solution.at_ends().as_slice() {
+    let given = match view.solution.at_ends().as_slice() {
         [] => String::new(),
         names => format!(", given the values of {} at ends of their ranges", names.join(", ")),
-    }
+    };
+    let assumption = view.solution.assumption();
+    given + &assumption.map_or_else(String::new, |assumption| format!(", {assumption}"))
 }

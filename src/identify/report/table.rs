@@ -55,7 +55,7 @@ fn row(view: &View, parameter: &SolvedParameter) -> Markup {
         },
         interval,
         html! { (standard_error(parameter)) },
-        verdict(parameter),
+        verdict(view, parameter),
     ];
     html! {
         tr role="row" {
@@ -99,14 +99,18 @@ fn standard_error(parameter: &SolvedParameter) -> String {
     }
 }
 
-fn verdict(parameter: &SolvedParameter) -> Markup {
+fn verdict(view: &View, parameter: &SolvedParameter) -> Markup {
+    let assumption = view.solution.assumption();
     let class = match parameter.verdict {
-        Some(Verdict::Identifiable) => "good",
+        Some(Verdict::Identifiable) if assumption.is_none() => "good",
         _ => "bad",
     };
     html! {
         @match parameter.verdict {
-            Some(verdict) => span class=(class) { (verdict.words()) },
+            Some(verdict) => {
+                span class=(class) { (verdict.words()) }
+                @if let Some(assumption) = assumption { br; span.ends { "(" (assumption) ")" } }
+            },
             None => span { "–" },
         }
         @if parameter.at_bound { br; span.bad { "at the end of its range" } }

@@ -141,6 +141,7 @@ impl<'r> Cells<'r, '_> {
         let decimal = self.decimal(usual)?;
         let mut values = Vec::with_capacity(self.rows.len());
         let (mut notes, mut words, mut grouped) = (Vec::new(), Vec::new(), None);
+        notes.extend(self.points_of_thousands(usual));
         for (line, cell) in self.all() {
             match missing(cell) {
                 Some(_) if self.strict && cell.is_empty() => {
@@ -236,6 +237,23 @@ impl<'r> Cells<'r, '_> {
         }
     }
 
+    /// A sentence about numbers such as `1.000` where nothing in the file shows whether the point is a
+    /// decimal one: between semicolons or tabs it may as well separate thousands.
+    fn points_of_thousands(self, usual: Option<char>) -> Option<String> {
+        if usual.is_some() || self.places != (Places::Lines { commas: false }) {
+            return None;
+        }
+        let is_doubtful = |cell: &str| matches!(form(cell), Some(Form::Ambiguous('.')));
+        let (line, cell) = self.all().find(|(_, cell)| is_doubtful(cell))?;
+        let joined: String = cell.chars().filter(|c| *c != '.').collect();
+        Some(format!(
+            "`{cell}` in `{}`, {}, is read with a decimal point; if it means {joined}, remove the \
+             points that separate thousands from the file",
+            self.name,
+            self.place(line)
+        ))
+    }
+
     fn ambiguous(self, line: usize, cell: &str, certain: Option<(char, usize, &str)>) -> Fault {
         let joined: String = cell.chars().filter(|c| !matches!(c, '.' | ',')).collect();
         let point = cell.replace(',', ".");
@@ -294,4 +312,25 @@ fn truth(cell: &str) -> Option<bool> {
 
 fn short(cell: &str) -> String {
     cell.chars().take(40).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mat::read_csv;
+
+    #[test]
+    fn points_that_may_separate_thousands_are_named_where_no_number_decides() {
+        let notes = |text: &str| {
+            let table = read_csv(text.as_bytes()).unwrap();
+            table.column("P").unwrap().about.notes
+        };
+        let found = notes("t;P\n0;1.000\n1;4.000\n2;4.000\n");
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("`1.000` in `P`, line 2, column 2, is read with a decimal"));
+        for clear in
+            ["t;P\n0;1.000\n1;4.05\n", "t;P\n0.5;1.000\n1;4.000\n", "t,P\n0,1.000\n1,4.000\n"]
+        {
+            assert_eq!(notes(clear), [""; 0], "{clear}");
+        }
+    }
 }

@@ -77,6 +77,12 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
          stagnation = 500             # generations without improvement\n",
     );
     let incomplete = check(session, &text);
+    if incomplete.is_some() {
+        // A column that could not be read may be the one that is missing.
+        for (_, why) in table.unreadable() {
+            session.note(mat::errors::DATA_NOTE, format!("column not used: {}", why.message));
+        }
+    }
     Ok(Draft { text, incomplete, question })
 }
 

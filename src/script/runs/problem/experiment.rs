@@ -266,6 +266,9 @@ impl Source<'_> {
         let time = match name.as_str() {
             "time" => {
                 notes.about(table, time_axis::repeated(&own, &column));
+                if self.segment.origin.is_none() {
+                    time_axis::note_unit(&own, &column, &entry, (table, notes));
+                }
                 time_axis::seconds(&column, &entry, self.segment.origin, (table, notes))?
             }
             _ => {

@@ -1,5 +1,6 @@
-//! Values that a logger or an instrument writes instead of a measurement: codes such as -999, and the
-//! end of a range that a signal has left.
+//! Values that a logger or an instrument writes instead of a measurement: codes such as -999, spikes far
+//! from all other values, the end of a range that a signal has left, and the last value of a sensor that
+//! answers no more.
 
 use crate::mat::Column;
 
@@ -10,6 +11,17 @@ const CODES: [f64; 14] = [
 ];
 /// A code lies this many spans of the other values beyond them.
 const BEYOND: f64 = 3.0;
+/// Spikes lie in at most one row of this many, and in so few consecutive ones: the pulses of an input are
+/// longer, or more frequent. 85 °C, with which a digital thermometer starts, may come twice.
+const SPIKES: usize = 20;
+const TOGETHER: usize = 2;
+/// A sensor is frozen where this many consecutive values are equal,
+const FROZEN: usize = 20;
+/// chance makes such runs less often than this,
+const BY_CHANCE: f64 = 1e-6;
+/// and the other values are noisy: this part of their steps reverses the one before. In the temperature of a room with
+/// 0.05 K of noise it is 0.21; a programme of ramps, which also stands still, hardly reverses.
+const REVERSALS: f64 = 0.1;
 /// Rows that are named.
 const NAMED: usize = 5;
 /// The end of a range occurs this often, and so many times as often as any value within it. Noise that
@@ -21,29 +33,87 @@ const CONSECUTIVE: usize = 3;
 /// between steps larger than this part of the median one.
 const ABRUPT: f64 = 0.5;
 
-/// Sentences about codes that are used as numbers, in the rows of a column.
+/// Sentences about codes and spikes that are used as numbers, in the rows of a column.
 pub(in crate::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
-    let others: Vec<_> = column.known().filter(|(_, v)| !CODES.contains(v)).collect();
+    let found = of(column);
+    let others: Vec<_> = column.known().filter(|(_, v)| !found.contains(v)).collect();
     let Some([low, high]) = ends(&others) else { return Vec::new() };
-    let sentence = |code: f64| {
-        let coded: Vec<_> = column.known().filter(|(_, v)| *v == code).collect();
+    let sentence = |code: &f64| {
+        let coded: Vec<_> = column.known().filter(|(_, v)| v == code).collect();
         format!(
             "{code} in {} of `{name}` is far from the other values, {low} to {high}: if it is \
-             the fault code of an instrument, leave the cells empty; it is used as a value",
+             the fault code of an instrument or a spike, leave the cells empty; it is used as a \
+             value",
             places(column, &coded)
         )
     };
-    of(column).into_iter().map(sentence).collect()
+    found.iter().map(sentence).collect()
 }
 
-/// The codes among the values of a column: those that are far from all values that are none.
+/// The codes and spikes among the values of a column: those that are far from all values that are none.
 pub(in crate::runs) fn of(column: &Column) -> Vec<f64> {
     // One code must not hide another: 9999 for a short circuit beside -9999 for an open one.
     let (suspects, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| CODES.contains(v));
     let Some([low, high]) = ends(&others).filter(|_| others.len() > 1) else { return Vec::new() };
     let is_far = |code: f64| (code - high).max(low - code) > BEYOND * (high - low);
     let occurs = |code: f64| suspects.iter().any(|(_, value)| *value == code);
-    CODES.into_iter().filter(|code| is_far(*code) && occurs(*code)).collect()
+    let mut found: Vec<f64> =
+        CODES.into_iter().filter(|code| is_far(*code) && occurs(*code)).collect();
+    found.extend(spikes(&others));
+    found
+}
+
+/// Values far from all others, in rows whose neighbours are not.
+fn spikes(known: &[(usize, f64)]) -> Vec<f64> {
+    let mut sorted: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
+    sorted.sort_by(f64::total_cmp);
+    let most = sorted.len() / SPIKES;
+    let Some(last) = sorted.len().checked_sub(most + 1).filter(|_| most > 0) else {
+        return Vec::new();
+    };
+    // Where all others are equal, a single pulse is what the input is meant to be.
+    let spread = sorted[last] - sorted[most];
+    let [from, to] = [sorted[most] - BEYOND * spread, sorted[last] + BEYOND * spread];
+    let is_far = |value: f64| value < from || value > to;
+    let together = known.chunk_by(|a, b| is_far(a.1) && is_far(b.1)).map(<[_]>::len).max();
+    let alone = together.is_some_and(|count| count <= TOGETHER);
+    if spread == 0.0 || !alone {
+        return Vec::new();
+    }
+    let mut found: Vec<f64> = sorted.into_iter().filter(|value| is_far(*value)).collect();
+    found.dedup();
+    found
+}
+
+/// A sentence about the longest run of equal values of a sensor that measures noise elsewhere.
+pub(in crate::runs) fn frozen(name: &str, column: &Column) -> Option<String> {
+    let known: Vec<(usize, f64)> = column.known().collect();
+    let ends = ends(&known)?;
+    let runs: Vec<&[(usize, f64)]> = known.chunk_by(|a, b| a.1 == b.1).collect();
+    let longest = runs.iter().max_by_key(|run| run.len())?;
+    // A signal may rest at the end of its range.
+    if longest.len() < FROZEN || ends.contains(&longest[0].1) {
+        return None;
+    }
+    let reversals = runs.windows(3).filter(|three| {
+        let [a, b, c] = [three[0][0].1, three[1][0].1, three[2][0].1];
+        (b - a) * (c - b) < 0.0
+    });
+    let is_noisy = reversals.count() as f64 >= REVERSALS * runs.len() as f64
+        && stops_abruptly(&known, longest[0].1);
+    let others = (known.len() - longest.len()) as f64;
+    let equal = (others - runs.len() as f64 + 1.0).max(1.0) / others.max(1.0);
+    let chance = others * crate::elementary::powi(equal, longest.len() as i32);
+    (is_noisy && chance < BY_CHANCE).then(|| {
+        let (first, last) =
+            (column.place(longest[0].0), column.place(longest[longest.len() - 1].0));
+        format!(
+            "`{name}` is {} in {} consecutive rows, {first} to {last}, and noisy elsewhere: if the \
+             sensor was frozen, leave the cells empty; they are used as values",
+            longest[0].1,
+            longest.len()
+        )
+    })
 }
 
 /// A sentence about each end of the values at which a measured signal may have been cut off.
@@ -135,6 +205,35 @@ mod tests {
                 .is_empty()
         );
         assert!(codes("T", &column(vec![-999.0; 5])).is_empty(), "nothing to compare with");
+    }
+
+    #[test]
+    fn spikes_and_frozen_sensors_are_named_and_pulses_are_not() {
+        let noise = |k: usize| ((k * k * 7919 + k * 104_729) % 1013) as f64 / 1013.0 - 0.5;
+        let found = codes("T", &wave(|k, v| if k % 40 < 2 { 85.0 } else { v }));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("85 in row 1, row 2, row 41"), "{}", found[0]);
+        assert_eq!(codes("P", &wave(|k, v| if k == 9 { 400_000.0 } else { v })).len(), 1);
+        for pulses in [
+            wave(|k, _| if k == 9 { 1.0 } else { 0.0 }),
+            wave(|k, _| if (9..14).contains(&k) { 1.0 } else { 0.01 * noise(k) }),
+            wave(|k, _| if k % 10 == 9 { 1.0 } else { 0.01 * noise(k) }),
+        ] {
+            assert_eq!(codes("P", &pulses), [""; 0]);
+        }
+        let noisy = |k: usize, v: f64| v + 0.5 * noise(k);
+        let at = |k: usize| (80..140).contains(&k);
+        let found = frozen("T", &wave(|k, v| if at(k) { 20.07 } else { noisy(k, v) })).unwrap();
+        assert!(found.starts_with("`T` is 20.07 in 60 consecutive rows, row 81 to"), "{found}");
+        for living in [
+            wave(noisy),
+            // Noise that is rounded; a stop within a drive cycle; a switch.
+            wave(|k, v| noisy(k, v).round()),
+            wave(|k, _| if at(k) { 20.07 } else { 20.07 + 0.1 * (k as f64 - 110.0) }),
+            wave(|k, _| if at(k) { 1.0 } else { f64::from(k % 60 > 30) }),
+        ] {
+            assert_eq!(frozen("T", &living), None);
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::enclosing_class::{self, EnclosingClass};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry};
 use super::flat::{variable_of, variable_unit};
+use super::series::note_temperature;
 use super::time_axis::{self, Origin};
 use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
@@ -289,14 +290,16 @@ fn followed(
         true => data::column(table, requested, name, notes)?,
         false => table.named_values(requested.column.as_deref().unwrap_or(name), literals)?,
     };
-    notes.warn_about(
-        table,
-        fault_codes::codes(requested.column.as_deref().unwrap_or(name), &column),
-    );
+    let own = requested.column.as_deref().unwrap_or(name);
+    notes.warn_about(table, fault_codes::codes(own, &column));
+    notes.warn_about(table, fault_codes::frozen(own, &column));
     data::same_length([time_name, name], [time.len(), column.values.len()])?;
     check_type(name, base, &column)?;
     check_literals(name, literals, &column)?;
     let values = data::in_unit(&column, name, unit, requested, (table, notes))?.values;
+    let known = values.iter().copied().filter(|value| value.is_finite());
+    note_temperature((name, "inputs"), unit, (requested, &column), known, notes);
+    notes.warn_about(table, time_axis::truncated(time_name, time, (name, &values)));
     let rows: Vec<usize> =
         (0..time.len()).filter(|&row| time[row].is_finite() && values[row].is_finite()).collect();
     if rows.is_empty() {

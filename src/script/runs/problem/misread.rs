@@ -9,8 +9,15 @@ use crate::Session;
 use crate::diag::Fault;
 use crate::identify::problem::{Finding, FindingKind, Reading, Run, Solution, short_fit};
 
-/// Times in minutes, hours and milliseconds that are read as seconds.
-const TIMES: [(f64, &str); 3] = [(60.0, "minutes"), (3600.0, "hours"), (1e-3, "milliseconds")];
+/// Times in minutes, hours and milliseconds that are read as seconds, and a model that counts in minutes
+/// or hours.
+const TIMES: [(f64, &str); 5] = [
+    (60.0, "multiplied by 60, as if they were in minutes"),
+    (3600.0, "multiplied by 3600, as if they were in hours"),
+    (1e-3, "multiplied by 0.001, as if they were in milliseconds"),
+    (1.0 / 60.0, "divided by 60, as if the model counted in minutes"),
+    (1.0 / 3600.0, "divided by 3600, as if the model counted in hours"),
+];
 /// The other sign, kilo and milli.
 const COLUMNS: [f64; 3] = [-1.0, 1e3, 1e-3];
 /// Evaluations of each fit, at least and at most: 40 starts, of which some descend. Within these, all
@@ -130,8 +137,8 @@ impl Changed {
         let Changed { variable, column, factor, .. } = self;
         let what = match self.role {
             Role::X if variable == "time" => {
-                let unit = TIMES.iter().find(|own| own.0 == *factor).map_or("", |own| own.1);
-                return format!("the times multiplied by {factor}, as if `{column}` was in {unit}");
+                let how = TIMES.iter().find(|own| own.0 == *factor).map_or("", |own| own.1);
+                return format!("the times `{column}` {how}");
             }
             Role::X => "X",
             Role::Input => "input",
@@ -162,6 +169,7 @@ fn try_readings(
     let each = solution.effort.evaluations / changes.len().max(1) as u64;
     let rows = solution.series.iter().map(|series| series.points.len() as u64).max();
     let most_steps = STEPS + STEPS_PER_ROW * rows.unwrap_or(0);
+    let estimate: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
     let mut readings = Vec::new();
     run.evaluation.show("columns read otherwise");
     for changed in changes {
@@ -170,8 +178,8 @@ fn try_readings(
         let Ok(other) = again(session, Change::Entries(&change)) else { continue };
         let processors = session.world.processors();
         let flag = session.world.interrupt_flag();
-        let evaluations = each.clamp(fewest, most);
-        let (r_squared, simulations) = short_fit(other.problem, evaluations, &processors, flag)?;
+        let about = (each.clamp(fewest, most), &estimate[..]);
+        let (r_squared, simulations) = short_fit(other.problem, about, &processors, flag)?;
         solution.effort.simulations_for_statistics += simulations;
         if session.world.interrupted() {
             let sentence =

@@ -94,7 +94,8 @@ impl Comparison<'_> {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
         }
         let values = rows.iter().map(|row| measured.values[*row]);
-        note_temperature(y_name, (&unit, is_relative), (requested, &column), values, notes);
+        let own_unit = VariableUnit { symbol: unit.clone(), is_relative };
+        note_temperature((y_name, "outputs"), &own_unit, (requested, &column), values, notes);
         note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
         let weight = self.weight(y_name, requested)?;
         Ok(Series {
@@ -199,10 +200,11 @@ impl Comparison<'_> {
     }
 }
 
-/// Temperatures whose file gives no unit and whose values are usual in the other one.
-fn note_temperature(
-    y_name: &str,
-    (unit, is_relative): (&str, bool),
+/// Temperatures whose file gives no unit and whose values are usual in the other one, of a variable in
+/// this table of the problem.
+pub(super) fn note_temperature(
+    (name, place): (&str, &str),
+    VariableUnit { symbol: unit, is_relative }: &VariableUnit,
     (entry, column): (&ColumnEntry, &Column),
     values: impl Iterator<Item = f64>,
     notes: &mut Notes,
@@ -212,7 +214,7 @@ fn note_temperature(
     // Below 100 K there is little but cryogenics.
     const ROOM_IN_CELSIUS: [f64; 2] = [-50.0, 100.0];
     let has_unit = entry.unit.is_some() || entry.factor.is_some() || column.about.unit.is_some();
-    let ([from, to], other) = match unit {
+    let ([from, to], other) = match unit.as_str() {
         "degC" => (ROOM_IN_KELVIN, "K"),
         "K" => (ROOM_IN_CELSIUS, "degC"),
         _ => return,
@@ -221,9 +223,9 @@ fn note_temperature(
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
     if !has_unit && !is_relative && low >= from && high <= to {
         notes.warn(format!(
-            "the file gives no unit for `{y_name}`, which the model has in {unit}; its values lie \
+            "the file gives no unit for `{name}`, which the model has in {unit}; its values lie \
              between {low} and {high}: if they are in {other}, write `unit = \"{other}\"` in its \
-             entry of `outputs`"
+             entry of `{place}`"
         ));
     }
 }
@@ -260,6 +262,7 @@ fn note_missing_sigma(y_name: &str, rows: Vec<usize>, column: &Column, notes: &m
 fn note_suspicious(name: &str, column: &Column, (table, notes): (&MatFile, &mut Notes)) {
     notes.warn_about(table, fault_codes::codes(name, column));
     notes.warn_about(table, fault_codes::cut_off(name, column));
+    notes.warn_about(table, fault_codes::frozen(name, column));
 }
 
 /// Where values were converted, a number for sigma is taken in the unit of the model.

@@ -85,6 +85,23 @@ pub(super) fn origin(
     Ok(Some(Origin { calendar, number: first }))
 }
 
+/// Says that a column of times without a unit is read as seconds, unless its name is that of the variable
+/// `time` or its symbol, which are in seconds.
+pub(super) fn note_unit(
+    name: &str,
+    column: &Column,
+    entry: &ColumnEntry,
+    (table, notes): (&MatFile, &mut Notes),
+) {
+    let has_unit = entry.unit.is_some() || entry.factor.is_some() || column.about.unit.is_some();
+    if !has_unit && table.is_table() && !matches!(name, "time" | "t") {
+        notes.about(table, [format!(
+            "`{name}` has no unit, and is read in seconds; for minutes, write `x = {{ variable = \
+             \"time\", column = \"{name}\", unit = \"min\" }}`"
+        )]);
+    }
+}
+
 /// A column of time in seconds, from `origin` where it counts from a date as well.
 ///
 /// # Errors
@@ -125,6 +142,28 @@ pub(super) fn repeated(name: &str, column: &Column) -> Option<String> {
         column.place(*row),
         column.place(*next)
     ))
+}
+
+/// A sentence about inputs that change between rows of one time stamp, where most stamps have more rows
+/// than the two of an event, or all repeat: replicates have the same inputs.
+pub(super) fn truncated(
+    name: &str,
+    times: &[f64],
+    (input, values): (&str, &[f64]),
+) -> Option<String> {
+    let stamps = || times.chunk_by(|a, b| a == b);
+    let many = stamps().filter(|stamp| stamp.len() > 2).count();
+    if 2 * many <= stamps().count() && !are_replicates(times) {
+        return None;
+    }
+    let mut pairs = times.windows(2).zip(values.windows(2));
+    let changes = pairs.any(|(t, u)| t[0] == t[1] && (u[1] - u[0]).abs() > 0.0);
+    changes.then(|| {
+        format!(
+            "time stamps of `{name}` have several rows each, between which the input `{input}` changes: \
+             these are not replicates, but times of a clock without seconds; write them with seconds"
+        )
+    })
 }
 
 /// Whether every time stamp repeats: then rows are replicates, not values before and after an event.
@@ -195,6 +234,33 @@ fn rounded(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_without_a_unit_are_said_to_be_read_in_seconds() {
+        let noted = |text: &str, name: &str| {
+            let table = crate::mat::read_csv(text.as_bytes()).unwrap();
+            let (entry, mut notes) = (ColumnEntry::named(None), Notes::default());
+            let column = table.column(name).unwrap();
+            note_unit(name, &column, &entry, (&table, &mut notes));
+            notes.into_notes().pop().map(|note| note.sentence)
+        };
+        let found = noted("Time,V\n0,1\n1,2\n", "Time").unwrap();
+        assert!(found.contains("`Time` has no unit, and is read in seconds"), "{found}");
+        assert_eq!(noted("Time [min],V\n0,1\n1,2\n", "Time"), None);
+        assert_eq!(noted("time,V\n0,1\n1,2\n", "time"), None);
+    }
+
+    #[test]
+    fn inputs_that_change_within_time_stamps_show_a_clock_without_seconds() {
+        let minutes = [0.0, 0.0, 0.0, 60.0, 60.0, 60.0, 120.0];
+        let current = ("I", &[0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0][..]);
+        let found = truncated("Datum", &minutes, current).unwrap();
+        assert!(found.contains("the input `I` changes"), "{found}");
+        let same = ("I", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0][..]);
+        assert_eq!(truncated("Datum", &minutes, same), None, "replicates");
+        let event = ("I", &[0.0, 0.0, 1.0, 1.0][..]);
+        assert_eq!(truncated("t", &[0.0, 1.0, 1.0, 2.0], event), None, "an event");
+    }
 
     #[test]
     fn a_year_in_quarters_of_an_hour_has_the_gap_that_was_made() {

@@ -323,7 +323,7 @@ fn columns_that_are_read_wrongly_come_first_and_are_found() {
     let first = &minutes.findings[0].sentence;
     assert!(first.contains("check how the data are read"), "{first}");
     assert!(
-        first.contains("with the times multiplied by 60, as if `time` was in minutes"),
+        first.contains("with the times `time` multiplied by 60, as if they were in minutes"),
         "{first}"
     );
     assert!(!minutes.text().contains("Widen the range"), "{}", minutes.text());
@@ -522,4 +522,29 @@ fn the_calibrated_model_has_what_the_file_fixes_and_ties() {
         text.contains("T(start = {2, 3}, each fixed = true)") && text.contains("n = 2"),
         "{text}"
     );
+}
+
+/// A strong pattern makes the readings be tried although no estimate lies at an end; where none is better,
+/// nothing is said of them, and the verdicts say what they assume.
+#[test]
+fn residuals_with_a_strong_pattern_condition_the_verdicts() {
+    let parameters = "model = \"Valve\"\n[parameters]\nK = { fixed = 2 }\n\
+                      T = { min = 0.1, max = 1e6 }";
+    let experiment = "outputs = { y = \"y\" }\ninputs = { open = \"open\", level = \"level\" }";
+    let data = table("time,open,level,y", |t| {
+        format!("{},2,{}", (1.0..3.0).contains(&t), 1e-3 * opened(t, 2.0))
+    });
+    let milli = found(parameters, experiment, &data).unwrap();
+    assert!(milli.parameters.iter().all(|own| !own.at_bound), "{}", milli.text());
+    let text = milli.text();
+    assert!(text.contains("the column `y` (output `y`) multiplied by 1000 (R² 1)"), "{text}");
+    assert!(milli.to_json().contains("\"verdicts_assume\": \"if the data are read correctly\""));
+    let data = table("time,x", |t| format!("{}", (-0.5 * t).exp() + 0.2 * (2.0 * t).sin()));
+    let parameters = "model = \"Cell\"\n[parameters]\nk = { min = 1e-3, max = 10 }";
+    let other = found(parameters, "outputs = { x = \"x\" }", &data).unwrap();
+    assert!(!other.text().contains("short fit"), "{}", other.text());
+    let page = other.html();
+    assert!(page.contains("does not describe these data within their noise"), "{page}");
+    assert!(page.contains("identifiable from these data, if the model is right"), "{page}");
+    assert!(other.to_json().contains("\"verdicts_assume\": \"if the model is right\""));
 }
