@@ -426,7 +426,7 @@ impl Instance {
                 Wrong::Error(format!("the parameter `{}` has no value", variable.name))
             }),
             Access::Observed { column, negated } => {
-                let value = self.observe()?[column];
+                let value = self.observed()?[column];
                 Ok(if negated { -value } else { value })
             }
         }
@@ -459,7 +459,28 @@ impl Instance {
         }
     }
 
-    /// The observed variables.
+    /// The observed variables. Those of inputs that were set after a step of co-simulation are those after the
+    /// event at which the next step begins.
+    fn observed(&mut self) -> Result<&[f64], Wrong> {
+        let has_own_events =
+            matches!(self.kind, InterfaceKind::CoSimulation { has_event_mode: false, .. });
+        let State { phase, inputs_changed, observed, .. } = &self.state;
+        if *phase != Phase::Step || !has_own_events || !inputs_changed || observed.is_known {
+            return self.observe();
+        }
+        let kept = self.state.clone();
+        let mut handled = Ok(EventOutcome::Again);
+        while handled == Ok(EventOutcome::Again) {
+            handled = self.handle_event();
+        }
+        let done = handled.and_then(|_| self.observe().map(|_| ()));
+        let observed = std::mem::replace(&mut self.state, kept).observed;
+        done?;
+        self.state.observed = observed;
+        Ok(&self.state.observed.values)
+    }
+
+    /// The observed variables in the mode at hand.
     fn observe(&mut self) -> Result<&[f64], Wrong> {
         let State { system, time, x, observed, .. } = &mut self.state;
         let done = observed.get(|out| system.observe(*time, x, out)).err();

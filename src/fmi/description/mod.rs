@@ -26,6 +26,18 @@ pub enum Version {
     V3,
 }
 
+impl Version {
+    /// The version that `fmiVersion` says: of FMI 2 there is one, of FMI 3 later ones can be read as well.
+    fn of_word(word: &str) -> Option<Version> {
+        let numbers: Vec<&str> = word.split(['.', '-']).collect();
+        match numbers[..] {
+            ["2", "0", ..] => Some(Version::V2),
+            ["3", minor, ..] if minor.parse::<u32>().is_ok() => Some(Version::V3),
+            _ => None,
+        }
+    }
+}
+
 /// What a unit is, and whose: attributes that no simulation depends on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct About {

@@ -27,15 +27,9 @@ pub fn read(text: impl AsRef<[u8]>) -> Result<Description, FmuError> {
         return Err(root.error(format!("the root is `{}`, not `fmiModelDescription`", root.name())));
     }
     let written = root.required("fmiVersion")?;
-    let version = match written.split('.').next() {
-        Some("2") => Version::V2,
-        Some("3") => Version::V3,
-        _ => {
-            return Err(
-                root.error(format!("it is of FMI {written}; units of FMI 2.0 and 3.0 can be read"))
-            );
-        }
-    };
+    let version = Version::of_word(written).ok_or_else(|| {
+        root.error(format!("it is of FMI {written}; units of FMI 2.0 and 3.0 can be read"))
+    })?;
     Schema::of(version, written).check(&root)?;
     let mut description = head(&root, version)?;
     let variables = root.child("ModelVariables").map_or(Vec::new(), |all| all.children());

@@ -49,7 +49,9 @@ pub(super) fn check(
         Version::V3 => checked.value_references(),
     }?;
     checked.independent(root)?;
-    checked.structure(root)
+    checked.experiment(root)?;
+    checked.structure(root)?;
+    checked.is_complete()
 }
 
 /// The elements of a list: in FMI 2.0 they are in a group, in FMI 3.0 they have a name of their own.
@@ -309,7 +311,36 @@ impl Checked<'_, '_, '_> {
                 items.iter().map(|item| format!("{} ({})", item.value, item.name)).collect();
             return wrong(format!("starts with {start}, but its values are {}", all.join(", ")));
         }
-        Ok(())
+        self.range(at)
+    }
+
+    /// Whether what an importer may set starts within its range.
+    fn range(&self, at: usize) -> Result<(), FmuError> {
+        let own = &self.description.variables[at];
+        let Attributes { min, max, .. } = self.description.attributes_of(own);
+        let [min, max] = [min.unwrap_or(f64::NEG_INFINITY), max.unwrap_or(f64::INFINITY)];
+        let is_set = own.causality == Causality::Input || own.initial == Some(Initial::Exact);
+        let is_outside =
+            |start: &&String| real(start).is_some_and(|start| start < min || start > max);
+        match own.start.iter().filter(|_| is_set).find(is_outside) {
+            Some(start) => {
+                Err(self.at(at, format!("starts with {start}, outside its range {min} to {max}")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the experiment ends after its start.
+    fn experiment(&self, root: &Element) -> Result<(), FmuError> {
+        let own = &self.description.experiment;
+        let (start, element) = (own.start.unwrap_or(0.0), root.child("DefaultExperiment"));
+        match (element, own.stop) {
+            (Some(element), Some(stop)) if stop < start => {
+                Err(element
+                    .error(format!("the `stopTime` {stop} is before the `startTime` {start}")))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Aliases of FMI 2.0.5, variables of one base type with one value reference: not two of them can be set,
@@ -425,6 +456,31 @@ impl Checked<'_, '_, '_> {
             }
             let names = listed.map(|(element, own)| (*element, named(own).name.as_str()));
             unique("the variable", names)?;
+        }
+        Ok(())
+    }
+
+    /// Whether all outputs are in the structure, and the derivatives of the states, without which an importer
+    /// does not integrate them. Derivatives of variables that are computed may be missing: these are no states
+    /// where others are chosen.
+    fn is_complete(&self) -> Result<(), FmuError> {
+        let Description { variables, structure, model_exchange, .. } = self.description;
+        let is_listed = |list: &[Unknown], at: usize| list.iter().any(|own| own.variable == at);
+        let are_integrated = model_exchange.is_some();
+        for (at, own) in variables.iter().enumerate() {
+            let is_output = own.causality == Causality::Output && own.kind != Kind::Clock;
+            if is_output && !is_listed(&structure.outputs, at) {
+                return Err(self.at(at, "is an output that `ModelStructure` does not list"));
+            }
+            let is_state = |of: usize| {
+                structure.derivatives.is_empty() || variables[of].initial == Some(Initial::Exact)
+            };
+            if are_integrated
+                && own.derivative_of.is_some_and(is_state)
+                && !is_listed(&structure.derivatives, at)
+            {
+                return Err(self.at(at, "is a derivative that `ModelStructure` does not list"));
+            }
         }
         Ok(())
     }

@@ -278,6 +278,15 @@ fn broken_rules_are_said() {
         ("initial=\"calculated\"", "initial=\"calculated\" start=\"1\"", "has a start value"),
         ("value=\"2\"", "value=\"1\"", "the value of an item `1` is in line"),
         ("<Output valueReference=\"7\"", "<Output valueReference=\"3\"", "is not an output"),
+        ("start=\"1e-3\"", "start=\"-2\"", "`x` starts with -2, outside its range -1.5 to inf"),
+        ("stopTime=\"3\"", "stopTime=\"-3\"", "the `stopTime` -3 is before the `startTime` 0"),
+        ("fmiVersion=\"3.0\"", "fmiVersion=\"3.x\"", "it is of FMI 3.x"),
+        ("<Output valueReference=\"7\"", "<EventIndicator valueReference=\"7\"", "an output that"),
+        (
+            "<ContinuousStateDerivative valueReference=\"3\"",
+            "<EventIndicator valueReference=\"3\"",
+            "`der(x)` is a derivative that `ModelStructure` does not list",
+        ),
         ("nominal=\"1000000\"", "nominal=\"0\"", "has the nominal value 0"),
         ("causality=\"independent\"", "causality=\"local\"", "no independent variable"),
         ("derivative=\"7\"", "derivative=\"3\"", "cannot be the derivative of `der(x)`"),
@@ -293,7 +302,7 @@ fn broken_rules_are_said() {
         assert!(text.contains(said), "{to}: {text}");
     }
     let alias = |start: &str, unit: &str| {
-        let own = "<ScalarVariable name=\"y\" valueReference=\"7\" causality=\"output\"";
+        let own = "<ScalarVariable name=\"y\" valueReference=\"7\" causality=\"local\"";
         let text = write(&with_variables(Version::V2)).replace(
             "</ModelVariables>",
             &format!(

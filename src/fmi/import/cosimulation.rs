@@ -3,7 +3,8 @@
 //!
 //! Communication points are the output points and the beginnings of the pieces of inputs, and points between
 //! them where inputs change. A unit with steps of one length gets those of its experiment. What inputs are
-//! during a step, `inputs` says; where values are recorded they are those of this time.
+//! during a step, `inputs` says; where values are recorded they are those of this time. Where an input jumps
+//! there are two rows, with the limits from the left and from the right, as at events of model exchange.
 
 use super::calls::CallError;
 use super::stepped::{Stepped, Stopped};
@@ -21,7 +22,7 @@ pub(super) struct CoSimulation<'a> {
     points: Points,
     /// Whether events are handled by request (FMI 3.0).
     has_event_mode: bool,
-    /// Whether the last step has asked for an event.
+    /// Whether the last step has asked for an event, or inputs have jumped in it.
     needs_event: bool,
 }
 
@@ -94,7 +95,7 @@ impl<'a> CoSimulation<'a> {
             let is_point = output.is_some_and(|point| point <= t || same_time(point, t));
             if is_point || records_all {
                 if !ends {
-                    self.run.inputs.set(self.run.component, t, false)?;
+                    self.run.inputs.set(self.run.component, t, !self.has_event_mode)?;
                 }
                 self.run.record_as(output.filter(|_| is_point).map_or(t, |at| at.max(t)), out)?;
                 number += usize::from(is_point);
@@ -102,7 +103,7 @@ impl<'a> CoSimulation<'a> {
                     continue;
                 }
             }
-            if ends || t >= stop || same_time(t, stop) {
+            if ends || self.handle_event(out)? || t >= stop || same_time(t, stop) {
                 return Ok(());
             }
             let steps = self.run.statistics.steps;
@@ -125,11 +126,9 @@ impl<'a> CoSimulation<'a> {
     fn advance(&mut self, target: f64, out: &mut Trajectory) -> Result<bool, Stopped> {
         self.run.statistics.steps += 1;
         let mut without_progress = 0;
-        while self.run.time < target {
-            if self.prepare(target, out)? {
-                return Ok(true);
-            }
+        loop {
             let t = self.run.time;
+            self.run.inputs.set_step(self.run.component, (t, target), !self.has_event_mode)?;
             let end = self.run.component.step(t, target - t)?;
             let is_over = end.time >= target || same_time(end.time, target);
             let reached = if is_over { target } else { end.time };
@@ -138,39 +137,47 @@ impl<'a> CoSimulation<'a> {
                 return Err(self.run.component.makes_no_progress().into());
             }
             self.run.time = reached;
-            self.needs_event = end.needs_event;
+            let jumps = self.run.inputs.jump(reached);
+            self.run.inputs.approach(reached);
+            self.needs_event = self.has_event_mode && (end.needs_event || jumps);
             if end.terminates {
                 return Ok(true);
             }
-        }
-        Ok(false)
-    }
-
-    /// Sets the inputs of the next step, and handles an event where one is needed, with a row before
-    /// and one after it; whether the simulation ends.
-    fn prepare(&mut self, target: f64, out: &mut Trajectory) -> Result<bool, CallError> {
-        let t = self.run.time;
-        let component = self.run.component;
-        let is_new = out.time().last() != Some(&t);
-        if self.has_event_mode && (self.needs_event || self.run.inputs.jump(t)) {
-            self.needs_event = false;
-            self.run.statistics.time_events += 1;
-            if is_new {
-                self.run.inputs.set(component, t, false)?;
-                self.run.record(out)?;
+            if is_over {
+                return Ok(false);
             }
-            component.enter_event_mode()?;
-            self.run.inputs.seek(t);
-            self.run.inputs.set(component, t, true)?;
-            let update = component.update_discrete_states()?;
-            component.enter_step_mode()?;
-            self.run.record(out)?;
-            if update.terminates {
+            if self.handle_event(out)? {
                 return Ok(true);
             }
         }
+    }
+
+    /// Handles an event where one is needed, and jumps of inputs, with a row before and one after; whether
+    /// the simulation ends. From then on inputs follow the pieces that begin here.
+    fn handle_event(&mut self, out: &mut Trajectory) -> Result<bool, CallError> {
+        let t = self.run.time;
+        let component = self.run.component;
+        if !self.needs_event && !self.run.inputs.jump(t) {
+            self.run.inputs.seek(t);
+            return Ok(false);
+        }
+        self.needs_event = false;
+        self.run.statistics.time_events += 1;
+        if !out.time().last().is_some_and(|last| same_time(*last, t)) {
+            self.run.inputs.set(component, t, !self.has_event_mode)?;
+            self.run.record(out)?;
+        }
+        if self.has_event_mode {
+            component.enter_event_mode()?;
+        }
         self.run.inputs.seek(t);
-        self.run.inputs.set_step(component, (t, target), !self.has_event_mode)?;
-        Ok(false)
+        self.run.inputs.set(component, t, true)?;
+        let mut ends = false;
+        if self.has_event_mode {
+            ends = component.update_discrete_states()?.terminates;
+            component.enter_step_mode()?;
+        }
+        self.run.record(out)?;
+        Ok(ends)
     }
 }

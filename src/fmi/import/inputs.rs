@@ -95,7 +95,14 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Whether an input jumps at `t`; a bend is no event.
+    /// Chooses the pieces that hold until `t`.
+    pub fn approach(&mut self, t: f64) {
+        for input in &mut self.followed {
+            input.piece = input.piece_before(t);
+        }
+    }
+
+    /// Whether an input jumps until `t`; a bend is no event.
     pub fn jump(&self, t: f64) -> bool {
         self.followed.iter().any(|input| input.jumps(t))
     }
@@ -161,7 +168,13 @@ impl Followed<'_> {
         times.partition_point(|time| *time <= t || same_time(*time, t)).checked_sub(1)
     }
 
-    /// Whether the next piece begins at `t` with another value, or several pieces at once.
+    /// The number of the sample at which the piece begins that holds until `t`.
+    fn piece_before(&self, t: f64) -> Option<usize> {
+        let times = &self.samples.times;
+        times.partition_point(|time| *time < t && !same_time(*time, t)).checked_sub(1)
+    }
+
+    /// Whether the piece at `t` begins with another value, or several pieces at once.
     fn jumps(&self, t: f64) -> bool {
         let next = self.piece_at(t);
         let count = |piece: Option<usize>| piece.map_or(0, |piece| piece + 1);

@@ -568,3 +568,38 @@ fn discrete_inputs_are_held() {
         }
     }
 }
+
+/// Where inputs jump, rows of co-simulation have the limits from both sides as those of model exchange, at
+/// the last time as well.
+#[test]
+fn rows_of_co_simulation_have_both_limits_at_jumps() {
+    let text = "model M parameter Real k = 0.8; input Real u; input Boolean on; input Integer n; \
+                Real x(start = 1, fixed = true); output Real y = 2*x + u + (if on then 10 else 0) + n; \
+                equation der(x) = u - k*x; annotation(experiment(Tolerance = 1e-9)); end M;";
+    let held = "time,u,on,n\n0,0,false,0\n0.75,0,false,0\n0.75,1,true,2\n2,1,true,2\n2,3,false,5\n";
+    let here = folder(&[("M.mo", text), ("u.csv", held)]);
+    let simulate =
+        ["--input", "u.csv", "--stop-time", "2", "--intervals", "4", "--output", "o.csv"];
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "M.mo", "--model", "M", "--fmi", version, "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &export);
+        assert_eq!(code, 0, "{out}{errors}");
+        for method in ["dassl", "co-simulation"] {
+            let unit = ["simulate", "unit.fmu", "--allow-external", "--method", method];
+            let (code, _, errors) = gapi(&here, &[&unit[..], &simulate].concat());
+            assert_eq!(code, 0, "{errors}");
+            let all = columns(&here.path().join("o.csv"));
+            let rows = column(&all, "time").iter().zip(column(&all, "y"));
+            let direct: Vec<f64> = rows.map(|(_, y)| *y).collect();
+            let x = |row: usize| 2.0 * column(&all, "x")[row];
+            let at = |t: f64| column(&all, "time").iter().position(|time| *time == t);
+            let jump = at(0.75).expect("a row");
+            near(direct[jump], x(jump), 1e-9);
+            near(direct[jump + 1], x(jump) + 13.0, 1e-6);
+            let end = direct.len() - 1;
+            near(direct[end - 1], x(end) + 13.0, 1e-6);
+            near(direct[end], x(end) + 8.0, 1e-6);
+            assert_eq!(direct.len(), 8, "{version} {method}");
+        }
+    }
+}
