@@ -45,7 +45,7 @@ pub(super) struct ExportFmuArgs {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::simulate::name_and_value)]
     pub set: Vec<(String, String)>,
     /// Set the parameters of a file of SSP, as `gapi identify` writes it, and write a copy of it beside
-    /// the unit; --set comes after it
+    /// the unit, with the values of --set, which comes after it
     #[arg(long, value_name = "FILE.ssv", value_hint = ValueHint::FilePath)]
     pub set_file: Option<PathBuf>,
     /// Output file; the last part of the class's name with the extension .fmu if none is given
@@ -88,6 +88,7 @@ pub(super) fn export_fmu(arguments: &ExportFmuArgs, global: &Global) -> ExitCode
     if let Some(file) = &arguments.set_file {
         session.world.grant(Grant::Read(file));
         session.world.grant(Grant::Named(&beside(&output)));
+        session.world.grant(Grant::Read(&beside(&output)));
     }
     if session::lists_permissions(&mut session, global) {
         return ExitCode::SUCCESS;
@@ -106,11 +107,16 @@ fn run(
 ) -> Result<(), Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     translate(session, class)?;
+    let mut set = None;
     if let Some(path) = &arguments.set_file {
         parameter_sets::set(session, path).map_err(one)?;
+        set = Some(parameter_sets::read(session, path).map_err(one)?);
     }
     for (name, value) in &arguments.set {
         session.set_parameter_text(name, value).map_err(one)?;
+        if let Some(set) = &mut set {
+            parameter_sets::replace(session, set, name, value);
+        }
     }
     let version = if arguments.fmi == 2 { Version::V2 } else { Version::V3 };
     let kinds = Kinds {
@@ -124,10 +130,15 @@ fn run(
     session.print(&format!("wrote {} ({size:.1} MB)\n", output.display()));
     if let Some(path) = &arguments.set_file {
         let copy = beside(output);
-        let text = session.read_bytes(path).map_err(one)?;
+        let own = session.read_bytes(path).map_err(one)?;
+        let changed = set.filter(|_| !arguments.set.is_empty()).map(|set| set.to_xml());
+        let text = changed.map_or(own, String::into_bytes);
+        let former = session.read_bytes(&copy).ok();
+        let is_other = former.is_some_and(|former| former != text);
         session.permit_file(&copy);
         session.write_file(&copy, &text).map_err(one)?;
-        session.print(&format!("wrote {}\n", copy.display()));
+        let place = if is_other { ", in the place of a file with other content" } else { "" };
+        session.print(&format!("wrote {}{place}\n", copy.display()));
     }
     Ok(())
 }

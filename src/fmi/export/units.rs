@@ -33,7 +33,19 @@ pub(crate) fn base(name: &str) -> Option<BaseUnit> {
 
 /// A unit for people; `None` where it measures something else.
 pub(super) fn display(name: &str, shown: &str) -> Option<DisplayUnit> {
-    let conversion = units::unit(name)?.to(units::unit(shown)?)?;
+    let conversion = units::unit(name)?.to(units::written(shown)?)?;
     let (factor, offset) = (conversion.factor, conversion.offset);
     Some(DisplayUnit { name: shown.to_owned(), factor, offset, is_inverse: false })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::display;
+
+    #[test]
+    fn units_for_people_are_as_people_write_them() {
+        let celsius = display("K", "°C").expect("a temperature");
+        assert_eq!((celsius.name.as_str(), celsius.factor, celsius.offset), ("°C", 1.0, -273.15));
+        assert_eq!(display("K", "bar"), None);
+    }
 }

@@ -43,6 +43,13 @@ pub(super) struct Identity {
 unsafe extern "C" {
     fn calloc(count: usize, size: usize) -> *mut c_void;
     fn free(memory: *mut c_void);
+    fn fflush(stream: *mut c_void) -> c_int;
+}
+
+/// Writes out what units have printed by the library of C and what is still in its buffers.
+pub(super) fn flush_printed() {
+    // SAFETY: without a stream it is for all of them, and may be called at any time.
+    unsafe { fflush(std::ptr::null_mut()) };
 }
 
 impl Binary {

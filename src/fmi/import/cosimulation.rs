@@ -93,7 +93,8 @@ impl<'a> CoSimulation<'a> {
             let t = self.run.time;
             let output = self.run.settings.output.point(start, stop, number);
             let is_point = output.is_some_and(|point| point <= t || same_time(point, t));
-            if is_point || records_all {
+            let is_end = ends && !out.time().last().is_some_and(|last| same_time(*last, t));
+            if is_point || records_all || is_end {
                 if !ends {
                     self.run.inputs.set(self.run.component, t, !self.has_event_mode)?;
                 }

@@ -5,7 +5,7 @@ use super::LogMessage;
 use super::failure::SimulationFailure;
 use super::plan::Plan;
 #[cfg(feature = "host")]
-use super::unit::Unit;
+use super::{binary::flush_printed, unit::Unit};
 #[cfg(feature = "host")]
 use crate::sim::Trajectory;
 use crate::sim::{PortableSettings, Statistics};
@@ -128,6 +128,7 @@ pub fn serve(
                     result,
                     messages,
                 };
+                flush_printed();
                 before_answer();
                 send(to, &answer)?;
             }

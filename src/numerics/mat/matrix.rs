@@ -184,6 +184,8 @@ fn decode_text(codes: impl Iterator<Item = f64>) -> String {
 pub struct About {
     /// Its unit as the file writes it; `None` where it does not.
     pub unit: Option<String>,
+    /// What the file writes in the place of a unit, where this is not a known one.
+    pub unknown_unit: Option<String>,
     /// The line (in a spreadsheet the row) of each value, counted from 1; empty where there are none.
     pub lines: Arc<[usize]>,
     /// What was changed in reading, one sentence each.

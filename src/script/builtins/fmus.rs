@@ -8,6 +8,7 @@ use crate::errors::BAD_ARGUMENT;
 use crate::fmi::description::Version;
 use crate::fmi::export::{Kinds, identifier};
 use crate::fmi::import::{Imported, InterfaceKind};
+use crate::lower::errors::NOT_SUPPORTED;
 use crate::models::exported::{Form, exported};
 use crate::models::imported::{self, CO_SIMULATION};
 use crate::name::Name;
@@ -113,7 +114,7 @@ macro_rules! build_header {
 const BUILD_MODEL_FMU: &str = build_header!(
     "buildModelFMU",
     "Writes a model as a functional mock-up unit.",
-    "  input String platforms[:] = {\"static\"} \"has no effect: it runs on the platform of this program\";\n"
+    "  input String platforms[:] = {\"static\"} \"a unit is for the platform of this program; others are noted\";\n"
 );
 
 const TRANSLATE_MODEL_FMU_OPENMODELICA: &str = build_header!(
@@ -128,12 +129,26 @@ fn build_model_fmu(session: &mut Session, mut args: Args) -> Result<Value, Failu
     let kinds = kinds(&args.take::<String>("fmuType")?)?;
     let form = Form { version, kinds, name: None };
     let prefix: String = args.take("fileNamePrefix")?;
+    if args.names().any(|name| name == "platforms") {
+        note_platforms(session, &args.take::<Vec<String>>("platforms")?);
+    }
     let class = class.to_string();
     let prefix = if ["", "<default>"].contains(&prefix.as_str()) { class.clone() } else { prefix };
     let file = format!("{prefix}.fmu");
     let is_written = write(session, &class, form, &file);
     let shown = session.world.absolute(file.as_ref()).display().to_string();
     Ok(if is_written { shown } else { String::new() }.into())
+}
+
+/// Notes platforms that are asked for by name.
+fn note_platforms(session: &mut Session, platforms: &[String]) {
+    let is_own = |name: &&String| ["static", "dynamic"].contains(&name.as_str());
+    for name in platforms.iter().filter(|name| !is_own(name)) {
+        session.note(
+            NOT_SUPPORTED,
+            format!("`{name}` has no effect: the unit is for the platform of this program alone"),
+        );
+    }
 }
 
 /// Imports a unit under the name that `name` makes of the name of its model.

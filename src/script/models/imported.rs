@@ -196,16 +196,22 @@ impl Given {
         let place = self.place(unit, name)?;
         let variable = unit.variable(place);
         let types = unit.description.type_of(variable);
-        let literal = types.and_then(|own| own.items.iter().find(|item| item.name == text.trim()));
-        let value = match (text.trim(), literal) {
+        let items = types.map_or(&[][..], |own| &own.items[..]);
+        let text = text.trim();
+        // `Mode.on` is a literal as Modelica writes it.
+        let last = text.rsplit('.').next().filter(|_| text.parse::<f64>().is_err());
+        let named = |name: &str| items.iter().find(|item| item.name == name);
+        let value = match (text, named(text).or_else(|| last.and_then(named))) {
             (_, Some(item)) => item.value as f64,
             ("true", _) if variable.kind == Kind::Boolean => 1.0,
             ("false", _) if variable.kind == Kind::Boolean => 0.0,
             (number, _) => number.parse().map_err(|_| {
+                let names: Vec<&str> = items.iter().map(|item| item.name.as_str()).collect();
                 fault!(BAD_FMU, "`{name}` of `{}` cannot be `{text}`", unit.file).help(
                     match variable.kind {
-                        Kind::Boolean => "write `true` or `false`",
-                        _ => "write a number, or a literal of its enumeration",
+                        Kind::Boolean => "write `true` or `false`".to_owned(),
+                        _ if names.is_empty() => "write a number".to_owned(),
+                        _ => format!("its literals are {}", names.join(", ")),
                     },
                 )
             })?,

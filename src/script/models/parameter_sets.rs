@@ -39,18 +39,33 @@ pub fn read(session: &Session, path: &Path) -> Result<ParameterSet, Fault> {
 pub fn set(session: &mut Session, path: &Path) -> Result<(), Fault> {
     let set = read(session, path)?;
     for parameter in &set.parameters {
-        let unit = session.last_model().and_then(|model| {
-            let at = model.program.find_variable(&parameter.name).ok()?;
-            let variable = &model.program.variables()[at];
-            Some(VariableUnit {
-                symbol: variable.unit.to_string(),
-                is_relative: variable.is_relative,
-            })
-        });
+        let unit = unit_of(session, &parameter.name);
         let value = session.converted(parameter, unit, path)?;
         session.set_parameter_text(&parameter.name, &text(&value))?;
     }
     Ok(())
+}
+
+/// Gives a parameter of a set the value that the model translated last has been given, in the unit of the
+/// model; what a fit knows of it no longer holds.
+pub fn replace(session: &Session, set: &mut ParameterSet, name: &str, text: &str) {
+    let Some(own) = set.parameters.iter_mut().find(|own| own.name == name) else { return };
+    own.value = match (text.trim(), text.trim().parse()) {
+        (_, Ok(number)) => ParameterValue::Number(number),
+        ("true", _) => ParameterValue::Truth(true),
+        ("false", _) => ParameterValue::Truth(false),
+        (text, _) => ParameterValue::Text(text.to_owned()),
+    };
+    own.unit = unit_of(session, name).map(|unit| unit.symbol).filter(|unit| !unit.is_empty());
+    own.estimate = None;
+}
+
+/// The unit of a parameter of the model translated last.
+fn unit_of(session: &Session, name: &str) -> Option<VariableUnit> {
+    let model = session.last_model()?;
+    let at = model.program.find_variable(name).ok()?;
+    let variable = &model.program.variables()[at];
+    Some(VariableUnit { symbol: variable.unit.to_string(), is_relative: variable.is_relative })
 }
 
 /// Adds the values of a file to those of a unit.

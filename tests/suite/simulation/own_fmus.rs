@@ -603,3 +603,71 @@ fn rows_of_co_simulation_have_both_limits_at_jumps() {
         }
     }
 }
+
+/// A unit that is not known is warned of, for models and FMUs alike; a literal is set as Modelica writes it.
+#[test]
+fn unknown_units_of_data_are_warned_of() {
+    let text = "model M type Mode = enumeration(off, on); parameter Mode mode = Mode.off; \
+                parameter Real k = 1; input Real u(unit = \"W\"); \
+                Real x(start = 0, fixed = true); equation \
+                der(x) = k*u + (if mode == Mode.on then 10 else 0); end M;";
+    let here = folder(&[("M.mo", text), ("u.csv", "time,u [hp]\n0,1\n1,1\n")]);
+    let export = ["export-fmu", "M.mo", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    let said =
+        "`u` is in `hp`, which is not a known unit: its values are used for `u` as they are, in W";
+    for source in [&["M.mo", "--model", "M"][..], &["unit.fmu", "--allow-external"]] {
+        let more = ["--input", "u.csv", "--stop-time", "1", "--output", "o.csv", "--set"];
+        let simulate =
+            |set: &str| gapi(&here, &[&["simulate"], source, &more, &[set][..]].concat());
+        let (code, out, errors) = simulate("mode=Mode.on");
+        let text = errors.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(code == 0 && text.contains(said), "{out}{errors}");
+        let all = columns(&here.path().join("o.csv"));
+        near(*column(&all, "x").last().expect("a row"), 11.0, 1e-5);
+        let (code, _, errors) = simulate("mode=Mode.slow");
+        assert!(code == 1 && errors.contains("its literals are off, on"), "{errors}");
+    }
+}
+
+/// The set beside a unit has the values of the unit, whether a file gave them or the command line.
+#[test]
+fn the_set_beside_a_unit_has_its_values() {
+    let parameter = |name: &str| Parameter {
+        name: name.to_owned(),
+        value: ParameterValue::Number(5.0),
+        unit: None,
+        estimate: None,
+    };
+    let set = ParameterSet {
+        name: "set".to_owned(),
+        parameters: vec![parameter("k"), parameter("level")],
+    };
+    let here = folder(&[("P.mo", DECAY), ("s.ssv", &set.to_xml()), ("unit.ssv", "<other/>")]);
+    let base =
+        ["export-fmu", "P.mo", "--model", "P.Decay", "--set-file", "s.ssv", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &[&base[..], &["--set", "k=2"]].concat());
+    assert_eq!(code, 0, "{out}{errors}");
+    assert!(out.contains("in the place of a file with other content"), "{out}");
+    let text = fs::read_to_string(here.path().join("unit.ssv")).expect("a set");
+    let written = ParameterSet::read(&text).expect("a set");
+    let value = |at: usize| written.parameters[at].value.clone();
+    assert_eq!([value(0), value(1)], [2.0, 5.0].map(ParameterValue::Number), "{text}");
+}
+
+/// Results of co-simulation end with a row where the model ends, whether a step is to end there or not.
+#[test]
+fn a_unit_that_ends_within_a_step_has_a_last_row() {
+    let text = "model W output Real y = time; equation when time > 1 then terminate(\"done\"); \
+                end when; annotation(experiment(StopTime = 3)); end W;";
+    let here = folder(&[("W.mo", text)]);
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "W.mo", "--fmi", version, "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &export);
+        assert_eq!(code, 0, "{out}{errors}");
+        let all = simulated(&here, &["--method", "co-simulation", "--intervals", "7"]);
+        near(*column(&all, "time").last().expect("a row"), 1.0, 1e-6);
+        near(*column(&all, "y").last().expect("a row"), 1.0, 1e-6);
+    }
+}

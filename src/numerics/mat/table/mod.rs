@@ -110,6 +110,8 @@ struct Heading<'a> {
     /// Without the unit.
     bare: Option<&'a str>,
     unit: Option<String>,
+    /// What is there instead of one that is known.
+    unknown_unit: Option<String>,
 }
 
 fn headings<'a>(layout: &'a Layout<'_>) -> Vec<Heading<'a>> {
@@ -117,8 +119,10 @@ fn headings<'a>(layout: &'a Layout<'_>) -> Vec<Heading<'a>> {
     let heading = |(column, cell): (usize, &'a Cow<'_, str>)| {
         let name = layout::name(cell);
         let (bare, unit) = unit::split(name);
-        let own = units.get(column).and_then(|cell| unit::of_cell(cell));
-        Heading { column, name, bare, unit: own.or(unit) }
+        let cell = units.get(column).map(|cell| &**cell);
+        let unit = cell.and_then(unit::of_cell).or(unit);
+        let unknown_unit = unit::unknown(name, cell).filter(|_| unit.is_none());
+        Heading { column, name, bare, unit, unknown_unit }
     };
     layout.head.cells.iter().enumerate().map(heading).collect()
 }
@@ -157,8 +161,12 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
         if let Some(cells) = cells(layout, heading, places, strict).words(parsed.is_err()) {
             file.words.insert(name.clone(), Words { cells, lines: lines.clone() });
         }
-        let mut about =
-            About { unit: heading.unit.clone(), lines: lines.clone(), ..About::default() };
+        let mut about = About {
+            unit: heading.unit.clone(),
+            unknown_unit: heading.unknown_unit.clone(),
+            lines: lines.clone(),
+            ..About::default()
+        };
         match numbers(heading.name, parsed, dates, &mut about) {
             Ok(values) => file.insert_column(name, Matrix::column_vector(values), about),
             Err(fault) => file.fail(name, fault),

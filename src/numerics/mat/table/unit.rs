@@ -32,6 +32,18 @@ pub fn split(head: &str) -> (Option<&str>, Option<String>) {
     (None, None)
 }
 
+/// What a head has in brackets or a row of units has in its cell, where it is not known.
+pub(crate) fn unknown(head: &str, cell: Option<&str>) -> Option<String> {
+    let in_brackets = match split(head) {
+        (Some(name), None) => head.trim().strip_prefix(name),
+        _ => None,
+    };
+    let found = cell.or(in_brackets).map(|text| without_brackets(text.trim()));
+    let is_unknown =
+        |text: &&str| !text.is_empty() && !OTHER.contains(text) && known(text).is_none();
+    found.filter(is_unknown).map(str::to_owned)
+}
+
 /// The unit of a cell in a row of units; none where it does not convert.
 pub(crate) fn of_cell(cell: &str) -> Option<String> {
     known(without_brackets(cell))
@@ -96,5 +108,12 @@ mod tests {
         ] {
             assert_eq!(split(head), expected, "{head}");
         }
+        let none = |head: &str| unknown(head, None);
+        assert_eq!(none("u [hp]").as_deref(), Some("hp"));
+        assert_eq!(unknown("u", Some("gpm")).as_deref(), Some("gpm"));
+        assert_eq!(
+            [none("u [W]"), none("V(t)"), none("u"), unknown("u", Some("-"))],
+            [const { None }; 4]
+        );
     }
 }

@@ -129,11 +129,15 @@ fn converted(
     }
     let unchanged = || scaled(1.0, &|value| value);
     let explicit = entry.unit.as_deref();
-    let Some(given) = explicit.or(column.about.unit.as_deref()) else { return Ok(unchanged()) };
+    let own = entry.column.as_deref().unwrap_or(name);
+    let Some(given) = explicit.or(column.about.unit.as_deref()) else {
+        let unknown = column.about.unknown_unit.iter();
+        notes.warn_about(table, unknown.map(|given| unknown_unit([own, given, name, unit])));
+        return Ok(unchanged());
+    };
     if given == unit {
         return Ok(unchanged());
     }
-    let own = entry.column.as_deref().unwrap_or(name);
     if unit.is_empty() && explicit.is_none() {
         let is_coherent = |unit: Unit| unit.factor == 1.0 && unit.offset == 0.0;
         let scaled = written(given).filter(|unit| !is_coherent(*unit));
@@ -149,7 +153,7 @@ fn converted(
         if explicit.is_some() {
             return Err(incompatible(name, unit, given));
         }
-        notes.about(table, [format!(
+        notes.warn_about(table, [format!(
             "`{own}` is in {given} and `{name}` is in {unit}; these units are not comparable, so \
              the values are not converted"
         )]);
@@ -163,6 +167,15 @@ fn converted(
     let words = conversion.in_words() + zero_of_scale(conversion, absolute);
     notes.about(table, [format!("`{own}` is converted from {given} to {unit}{words}")]);
     Ok(scaled(conversion.factor, &|value| conversion.apply(value)))
+}
+
+/// A sentence about a column with a unit that is not known.
+fn unknown_unit([column, given, name, unit]: [&str; 4]) -> String {
+    format!(
+        "`{column}` is in `{given}`, which is not a known unit: its values are used for `{name}` as they \
+         are, in {}; convert them, or give the column a `unit` or a `factor`",
+        in_words(unit)
+    )
 }
 
 /// What must be known of the zeros of scales that differ, as the end of a sentence; `absolute` is the
