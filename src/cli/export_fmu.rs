@@ -88,7 +88,6 @@ pub(super) fn export_fmu(arguments: &ExportFmuArgs, global: &Global) -> ExitCode
     if let Some(file) = &arguments.set_file {
         session.world.grant(Grant::Read(file));
         session.world.grant(Grant::Named(&beside(&output)));
-        session.world.grant(Grant::Read(&beside(&output)));
     }
     if session::lists_permissions(&mut session, global) {
         return ExitCode::SUCCESS;
@@ -133,11 +132,10 @@ fn run(
         let own = session.read_bytes(path).map_err(one)?;
         let changed = set.filter(|_| !arguments.set.is_empty()).map(|set| set.to_xml());
         let text = changed.map_or(own, String::into_bytes);
-        let former = session.read_bytes(&copy).ok();
-        let is_other = former.is_some_and(|former| former != text);
+        let is_there = session.world.exists(&copy);
         session.permit_file(&copy);
         session.write_file(&copy, &text).map_err(one)?;
-        let place = if is_other { ", in the place of a file with other content" } else { "" };
+        let place = if is_there { ", in the place of the former file" } else { "" };
         session.print(&format!("wrote {}{place}\n", copy.display()));
     }
     Ok(())

@@ -649,7 +649,7 @@ fn the_set_beside_a_unit_has_its_values() {
         ["export-fmu", "P.mo", "--model", "P.Decay", "--set-file", "s.ssv", "-o", "unit.fmu"];
     let (code, out, errors) = exporting(&here, &[&base[..], &["--set", "k=2"]].concat());
     assert_eq!(code, 0, "{out}{errors}");
-    assert!(out.contains("in the place of a file with other content"), "{out}");
+    assert!(out.contains("in the place of the former file"), "{out}");
     let text = fs::read_to_string(here.path().join("unit.ssv")).expect("a set");
     let written = ParameterSet::read(&text).expect("a set");
     let value = |at: usize| written.parameters[at].value.clone();
