@@ -115,7 +115,7 @@ impl Comparison<'_> {
             Some(None) => Ok(Verdict::Agrees(0)),
             _ if self.accept => {
                 disk::write_beside(&transcript_of(path), transcript.as_bytes())?;
-                Ok(Verdict::Accepted)
+                Ok(Verdict::accepted(&transcript))
             }
             Some(Some(lines)) => Ok(Verdict::Differs(lines, transcript)),
             None => Ok(Verdict::Unrecorded(transcript)),

@@ -13,7 +13,7 @@ pub(super) fn report(results: &[Tested]) -> String {
     for Tested { path, verdict, seconds } in results {
         let case = Case { class: "gapi", name: &path.to_string_lossy(), seconds: Some(*seconds) };
         match verdict {
-            Verdict::Agrees(_) | Verdict::Accepted => report.case(&case, None),
+            Verdict::Agrees(_) | Verdict::Accepted { .. } => report.case(&case, None),
             Verdict::Skipped => report.skipped(&case, "its settings say that it is not a test"),
             Verdict::Unrecorded(_) => report.failure(&case, "nothing is recorded"),
             Verdict::Failed(message) => report.failure(&case, message),

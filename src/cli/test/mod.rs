@@ -186,7 +186,11 @@ fn conclude(results: &[Tested], arguments: &TestArgs) -> ExitCode {
 fn line(tested: &Tested, accept: bool, colour: bool) -> String {
     let (word, code, rest) = match &tested.verdict {
         Verdict::Agrees(_) => ("ok", "32", String::new()),
-        Verdict::Accepted => ("accepted", "33", String::new()),
+        Verdict::Accepted { is_failing: false } => ("accepted", "33", String::new()),
+        Verdict::Accepted { is_failing: true } => {
+            let words = "  the script ends with an error, which is now expected of it\n";
+            ("accepted", "33", words.to_owned())
+        }
         Verdict::Skipped => ("skipped", "33", String::new()),
         Verdict::Unrecorded(_) => ("new", "33", "  nothing is recorded: --accept\n".to_owned()),
         Verdict::Differs(lines, _) => ("differs", "31", shown(lines, colour)),
@@ -221,7 +225,7 @@ fn review(tested: &mut Tested) {
         return;
     }
     tested.verdict = match disk::write_beside(&transcript_of(&tested.path), transcript.as_bytes()) {
-        Ok(()) => Verdict::Accepted,
+        Ok(()) => Verdict::accepted(transcript),
         Err(error) => Verdict::Failed(error.to_string()),
     };
 }

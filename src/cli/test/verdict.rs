@@ -24,8 +24,10 @@ pub(super) enum Judgement {
 pub(super) enum Verdict {
     /// With this number of statements compared one by one.
     Agrees(usize),
-    /// The transcript was written.
-    Accepted,
+    /// The transcript was written; whether the script ends with an error.
+    Accepted {
+        is_failing: bool,
+    },
     /// Its settings say that it is not a test.
     Skipped,
     /// There is nothing to compare this transcript with.
@@ -38,8 +40,13 @@ pub(super) enum Verdict {
 }
 
 impl Verdict {
+    /// That this transcript was written.
+    pub(super) fn accepted(transcript: &str) -> Verdict {
+        Verdict::Accepted { is_failing: !transcript.ends_with("[exit code 0]\n") }
+    }
+
     pub(super) fn is_good(&self) -> bool {
-        matches!(self, Verdict::Agrees(_) | Verdict::Accepted)
+        matches!(self, Verdict::Agrees(_) | Verdict::Accepted { .. })
     }
 }
 

@@ -154,16 +154,22 @@ impl Ending {
             };
         }
         let kind = if is_minimum { EndingKind::Minimum } else { otherwise(run, &descents) };
+        let has_effect = found.derivatives.iter().any(|derivative| *derivative != 0.0);
         Ending {
             kind,
             relative_offset: offset.relative.filter(|relative| relative.is_finite()),
             reached,
-            words: words(kind, &offset, reached),
+            words: if has_effect { words(kind, &offset, reached) } else { NO_EFFECT.to_owned() },
             derivatives: Some(derivatives(&found)),
             simulations: found.simulations,
         }
     }
 }
+
+/// The words where all derivatives are zero.
+const NO_EFFECT: &str = "No parameter changes the simulated values at the measured points: check that the \
+                         inputs have data, and that the outputs depend on the parameters. There are no \
+                         intervals and no statements on identifiability.";
 
 fn derivatives(found: &Linearization) -> String {
     match (found.exact, &found.refusal) {

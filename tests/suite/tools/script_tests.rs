@@ -4,6 +4,16 @@ use crate::support::program::{LINE, folder, gapi};
 use std::fs;
 
 #[test]
+fn accepting_a_script_that_fails_says_so() {
+    let here =
+        folder(&[("bad.mos", "translateModel(Missing);\nexit(1);\n"), ("good.mos", "a = 1\n")]);
+    let (code, out, _) = gapi(&here, &["test", "bad.mos", "--accept"]);
+    assert!(code == 0 && out.contains("the script ends with an error"), "{out}");
+    let (_, out, _) = gapi(&here, &["test", "good.mos", "--accept"]);
+    assert!(!out.contains("ends with an error"), "{out}");
+}
+
+#[test]
 fn a_transcript_is_accepted_then_agrees_then_differs() {
     let here = folder(&[("a.mos", "x = 1.5\nx + 1\n")]);
     let (code, out, _) = gapi(&here, &["test", "."]);

@@ -73,6 +73,9 @@ pub(super) fn printable(table: &Table) -> Result<(), Fault> {
     }
 }
 
+/// What the parser says where a text or a key in quotation marks should end.
+const EXPECTED_QUOTE: &str = "literal string, expected `'`";
+
 /// Where the parser has stopped.
 struct Place<'t> {
     text: &'t str,
@@ -107,17 +110,22 @@ impl<'t> Place<'t> {
                 "write a number, `true` or `false` in lower case, or text in double quotes",
             ));
         }
-        if let Some(fault) = self.punctuation(message) {
-            return Some(fault);
-        }
-        if !is_about(&["expected `=`", "extra comma", "missing comma", "expected newline"]) {
-            return None;
-        }
-        if let Some(number) = decimal_comma(&line) {
+        // After the comma of `max = 1,0 }` the parser expects a key, which may be in quotation marks.
+        let is_entry =
+            is_about(&["expected `=`", "extra comma", "missing comma", "expected newline"]);
+        if let Some(number) =
+            decimal_comma(&line).filter(|_| is_entry || is_about(&[EXPECTED_QUOTE]))
+        {
             return Some(
                 fault!(BAD_OPTION, "a comma separates entries; numbers have a decimal point")
                     .help(format!("write `{number}`")),
             );
+        }
+        if let Some(fault) = self.punctuation(message) {
+            return Some(fault);
+        }
+        if !is_entry {
+            return None;
         }
         let comment =
             ["//", "%", "--", "/*"].into_iter().find(|mark| line.trim_start().starts_with(mark));
@@ -155,7 +163,7 @@ impl<'t> Place<'t> {
             _ if message.starts_with("duplicate key") => {
                 ("this is written twice", "keep one of them")
             }
-            _ if message.contains("literal string, expected `'`")
+            _ if message.contains(EXPECTED_QUOTE)
                 || message.contains("basic string, expected `\"`") =>
             {
                 ("a quotation mark is missing at the end", "close the text on its line")
@@ -354,6 +362,13 @@ mod tests {
     fn refused(text: &str) -> String {
         let error = file::read(SourceId::NONE, text).expect_err("a refusal");
         format!("{} | {}", error.message, error.helps.join(" | "))
+    }
+
+    #[test]
+    fn a_decimal_comma_at_the_end_of_a_table_in_braces_is_named() {
+        let text = "model = \"M\"\n[parameters]\nR0 = { min = 1e-4, max = 1,0 }\n";
+        let found = refused(text);
+        assert!(found.contains("numbers have a decimal point | write `1.0`"), "{found}");
     }
 
     #[test]

@@ -548,3 +548,13 @@ fn residuals_with_a_strong_pattern_condition_the_verdicts() {
     assert!(page.contains("identifiable from these data, if the model is right"), "{page}");
     assert!(other.to_json().contains("\"verdicts_assume\": \"if the model is right\""));
 }
+
+#[test]
+fn parameters_without_effect_are_no_missed_minimum() {
+    let parameters = "model = \"Valve\"\n[parameters]\nK = { min = 0.1, max = 10 }\n\
+                      T = { min = 0.1, max = 10 }";
+    let data = table("time,y", |t| format!("{}", opened(t, 2.0)));
+    let text = found(parameters, "outputs = { y = \"y\" }", &data).unwrap().text();
+    assert!(text.contains("No parameter changes the simulated values"), "{text}");
+    assert!(!text.contains("not a minimum"), "{text}");
+}
