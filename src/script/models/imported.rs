@@ -154,7 +154,12 @@ pub fn import(
             help: "use the program `gapi`")
     };
     if !host.permits(&session.world.absolute(path)) {
-        let shown = path.display();
+        // A name alone is that of the file itself, not of a link to it.
+        let is_name = path.components().count() == 1;
+        let is_link = is_name && session.world.is_link(path);
+        let shown = if is_link { Path::new(".").join(path) } else { path.to_owned() };
+        let shown = shown.display().to_string();
+        let shown = if shown.contains(' ') { format!("\"{shown}\"") } else { shown };
         bail!(
             EXTERNAL_REFUSED,
             "`{name}` brings binary code, which is not run without permission";

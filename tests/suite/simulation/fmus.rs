@@ -372,6 +372,25 @@ fn nothing_runs_without_permission() {
     }
 }
 
+/// The option that a refusal proposes is the one that permits it, also for links and names with spaces.
+#[cfg(unix)]
+#[test]
+fn the_permission_that_is_proposed_permits() {
+    let Some(here) = with_unit(3) else { return };
+    let at = |name: &str| here.path().join(name);
+    fs::copy(at("unit.fmu"), at("a pump.fmu")).expect("copied");
+    std::os::unix::fs::symlink(at("unit.fmu"), at("link.fmu")).expect("a link");
+    for (name, written, given) in [
+        ("a pump.fmu", "--allow-external=\"a pump.fmu\"", "--allow-external=a pump.fmu"),
+        ("link.fmu", "--allow-external=./link.fmu", "--allow-external=./link.fmu"),
+    ] {
+        let (code, _, errors) = gapi(&here, &["simulate", name]);
+        assert!(code == 1 && errors.contains(written), "{errors}");
+        let (code, _, errors) = gapi(&here, &["simulate", name, given]);
+        assert_eq!(code, 0, "{errors}");
+    }
+}
+
 /// A unit that goes wrong in its own way: the message says how, and no files stay in the working folder.
 #[test]
 fn faults_of_a_unit_are_said() {
