@@ -289,7 +289,11 @@ impl System {
             match self.pass(t, stage, change) {
                 Ok(None) => return Ok(any),
                 Ok(Some(moved)) => any |= moved == Moved::Relation,
-                Err(_) if !self.loops.is_brief && self.find_other_branch(t, stage) => {
+                Err(_)
+                    if !self.loops.is_brief
+                        && !self.loops.keeps_branches
+                        && self.find_other_branch(t, stage) =>
+                {
                     return Ok(true);
                 }
                 Err(failure) => return Err(failure),

@@ -39,8 +39,24 @@ impl System {
         self.iterate_events(t, Stage::Initial).map(|_| ())
     }
 
-    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    /// With `homotopy`, and then without it, in the branches that the start values lead to, before
+    /// others are tried: each of many branches of a large loop costs as much as the first. With all
+    /// of them HeatExchangerSimulation of the standard library, which is solved without `homotopy`,
+    /// has not begun after 90 s.
     pub(super) fn solve_from_start_values(&mut self, t: f64) -> Result<(), Failure> {
+        if self.program.sorted.dae.homotopy.is_some() {
+            self.loops.keeps_branches = true;
+            let outcome = self.solve_in_branches(t);
+            self.loops.keeps_branches = false;
+            if outcome.is_ok() {
+                return outcome;
+            }
+        }
+        self.solve_in_branches(t)
+    }
+
+    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    fn solve_in_branches(&mut self, t: f64) -> Result<(), Failure> {
         if let Some(homotopy) = self.program.sorted.dae.homotopy
             && self.follow_homotopy(t, homotopy).is_ok()
         {

@@ -93,6 +93,8 @@ pub(super) struct LoopState {
     pub(super) event_solvers: Vec<LoopSolver>,
     /// Whether a start is given up where Newton's method fails with the branches at hand.
     pub(super) is_brief: bool,
+    /// Whether the branches at hand are kept where they cannot be solved.
+    pub(super) keeps_branches: bool,
     /// The start with the parameters of the model, once it was needed.
     pub(super) own_start: Option<Box<SolvedStart>>,
     /// One for every selection of states.

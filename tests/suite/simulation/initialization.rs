@@ -36,6 +36,19 @@ fn homotopy_that_leads_nowhere_is_left_aside() {
 }
 
 #[test]
+fn branches_are_not_tried_where_homotopy_leads_nowhere() {
+    // In no branch the simplified equation has a solution.
+    let text = "model B Real x(start = 1); Real y[6]; equation
+        for i in 1:6 loop y[i] = if x > 10 + i then 1 else 0; end for;
+        homotopy(x^2 - 4, x^2 + 1) + sum(y) = 0; end B;";
+    let run = Run::of(text, 1.0);
+    run.follows("x", 1e-9, |_| 2.0);
+    let start = &run.system.loop_efforts()[0];
+    // 304; 3,177 where branches are tried on the way of homotopy.
+    assert!(start.evaluations < 1000, "{} evaluations of the loop", start.evaluations);
+}
+
+#[test]
 fn homotopy_is_its_actual_argument_after_the_start() {
     let text = "model H Real x(start = 1, fixed = true); Real y;
         equation y = homotopy(actual = 2*x, simplified = 7); der(x) = -y; end H;";
