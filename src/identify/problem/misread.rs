@@ -66,7 +66,7 @@ impl Solution {
 
     /// Whether the residuals of a series have a pattern, or its fit is worse than a constant.
     pub fn has_pattern(&self) -> bool {
-        self.findings.iter().any(|own| is_pattern(own))
+        self.findings.iter().any(is_pattern)
     }
 
     /// Says first that columns may be read wrongly, where several estimates lie at ends.

@@ -128,8 +128,8 @@ pub(crate) const MAX_BYTES: usize = 1 << 28;
 /// A fault if a string of so many bytes is longer than 2^28 bytes, which no string of a script or model may be.
 pub fn check_length(bytes: usize) -> Result<(), Fault> {
     match bytes {
-        // It is put together, and then copied to where it is shared.
-        0..=MAX_BYTES if is_available(2 * bytes) => Ok(()),
+        // It is put together, and then copied to where it is shared; allocators round up.
+        0..=MAX_BYTES if is_available(2 * bytes + bytes / 2) => Ok(()),
         0..=MAX_BYTES => bail!(STRING_TOO_LONG, "there is no memory for a string of {bytes} bytes"),
         _ => {
             bail!(STRING_TOO_LONG, "a string of {bytes} bytes is too long; {MAX_BYTES} is the most")

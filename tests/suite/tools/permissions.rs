@@ -257,6 +257,7 @@ fn what_exists_outside_is_not_told() {
     std::fs::create_dir(elsewhere.path().join("inner.d")).unwrap();
     std::os::unix::fs::symlink("round.d", elsewhere.path().join("round.d")).unwrap();
     let outside = elsewhere.path().display();
+    let allowed = regex::Regex::new("--allow-read=[^`]*").unwrap();
     for question in [
         "regularFileExists(\"PATH\")",
         "directoryExists(\"PATH\")",
@@ -293,7 +294,6 @@ fn what_exists_outside_is_not_told() {
             assert!(code == 1 && errors.contains("--allow-"), "{question}: {out}{errors}");
             let own = here.path().display().to_string();
             // The folder to allow is that of the name, whether it exists or not.
-            let allowed = regex::Regex::new("--allow-read=[^`]*").unwrap();
             let said = out + &errors;
             let said = allowed.replace_all(&said, "--allow-read=FOLDER");
             let said = said.replace(name, "NAME").replace(&own, "HERE");
