@@ -5,6 +5,7 @@ use super::instants::Stage;
 use super::parameter_path::places;
 use super::singular_systems::loops_of;
 use super::system::System;
+use crate::codegen::code::CompiledLoop;
 use crate::lower::Homotopy;
 use crate::sim::Failure;
 
@@ -14,6 +15,12 @@ const CONSISTENT: f64 = 1e-6;
 /// Parts of the way from simplified to actual expressions.
 const FIRST_HOMOTOPY_STEP: f64 = 0.1;
 const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
+
+/// Loops with more iteration variables are large. That of HeatExchangerSimulation of the standard
+/// library has 226 and is solved without `homotopy`: with all branches before, it has not begun after
+/// 90 s. That of OpAmps.SignalGenerator is small, and has the solution of the reference in a branch that
+/// is tried on the way of `homotopy`.
+const LARGE: usize = 50;
 
 impl System {
     /// From the start values; where Newton's method fails with parameters that were set, from the solution
@@ -39,12 +46,12 @@ impl System {
         self.iterate_events(t, Stage::Initial).map(|_| ())
     }
 
-    /// With `homotopy`, and then without it, in the branches that the start values lead to, before
-    /// others are tried: each of many branches of a large loop costs as much as the first. With all
-    /// of them HeatExchangerSimulation of the standard library, which is solved without `homotopy`,
-    /// has not begun after 90 s.
+    /// Where a loop is large, with `homotopy`, and then without it, in the branches that the start values
+    /// lead to, before others are tried: each of many branches costs as much as the first.
     pub(super) fn solve_from_start_values(&mut self, t: f64) -> Result<(), Failure> {
-        if self.program.sorted.dae.homotopy.is_some() {
+        let is_large = |torn: &CompiledLoop| torn.unknowns.len() > LARGE;
+        let has_large = loops_of(&self.program.initial_steps).any(is_large);
+        if has_large && self.program.sorted.dae.homotopy.is_some() {
             self.loops.keeps_branches = true;
             let outcome = self.solve_in_branches(t);
             self.loops.keeps_branches = false;
