@@ -18,8 +18,7 @@ const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
 
 /// Loops with more iteration variables are large. That of HeatExchangerSimulation of the standard
 /// library has 226 and is solved without `homotopy`: with all branches before, it has not begun after
-/// 90 s. That of OpAmps.SignalGenerator is small, and has the solution of the reference in a branch that
-/// is tried on the way of `homotopy`.
+/// 90 s. In small loops branches cost little, and the way of `homotopy` chooses among solutions.
 const LARGE: usize = 50;
 
 impl System {
