@@ -3,8 +3,9 @@
 //! annotation, and in words the description.
 
 use crate::FmuError;
-use crate::description::base_unit;
+use crate::description::{BaseUnit, base_unit, read_unit};
 use crate::export::base;
+use crate::units::Definitions;
 use crate::xml::{Element, Xml, number};
 use roxmltree::Document;
 use std::collections::BTreeMap;
@@ -21,6 +22,8 @@ pub struct ParameterSet {
     pub name: String,
     /// The parameters.
     pub parameters: Vec<Parameter>,
+    /// The units that the file defines.
+    pub units: Definitions,
 }
 
 /// A parameter with its value.
@@ -61,6 +64,7 @@ impl ParameterSet {
     pub fn to_xml(&self) -> String {
         let mut xml = Xml::new();
         let standard = "http://ssp-standard.org/SSP1/SystemStructure";
+        let base = |name: &str| base(name).or_else(|| BaseUnit::of(self.units.defined(name)?));
         let known = |unit: &String| Some((unit.clone(), base(unit)?));
         let units = self.parameters.iter().filter_map(|own| known(own.unit.as_ref()?));
         // A unit must be one that is known, and be declared.
@@ -105,7 +109,12 @@ impl ParameterSet {
             return Err(format!("the root is `{}`, not `ParameterSet`", root.name()));
         }
         let name = root.text("name").unwrap_or_default();
-        let mut set = ParameterSet { name, parameters: Vec::new() };
+        let mut set = ParameterSet { name, ..ParameterSet::default() };
+        for element in root.elements("Units", "Unit") {
+            let own = read_unit(&element).map_err(placed)?;
+            let base = own.base.as_ref().and_then(BaseUnit::unit);
+            base.into_iter().for_each(|unit| set.units.add(&own.name, unit));
+        }
         for element in root.elements("Parameters", "Parameter") {
             let own = read_parameter(&element).map_err(placed)?;
             if set.parameters.iter().any(|known| known.name == own.name) {
@@ -191,6 +200,7 @@ fn read_parameter(element: &Element) -> Result<Parameter, FmuError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units;
 
     #[test]
     fn a_set_is_read_as_it_was_written() {
@@ -201,19 +211,26 @@ mod tests {
             estimate: None,
         };
         let estimate = Estimate { interval: Some([1.5e-7, f64::INFINITY]), deviation: Some(0.25) };
-        let set = ParameterSet {
+        let mut set = ParameterSet {
             name: "Room & board".to_owned(),
+            units: Definitions::default(),
             parameters: vec![
                 Parameter {
                     unit: Some("W/K".to_owned()),
                     estimate: Some(estimate),
                     ..parameter("wall.G", ParameterValue::Number(0.1 + 0.2))
                 },
+                Parameter {
+                    unit: Some("hp".to_owned()),
+                    ..parameter("power", ParameterValue::Number(2.0))
+                },
                 parameter("on", ParameterValue::Truth(true)),
                 parameter("label", ParameterValue::Text("a < \"b\"".to_owned())),
             ],
         };
+        set.units.add("hp", units::Unit { factor: 745.7, ..units::written("W").unwrap() });
         let xml = set.to_xml();
+        set.units.add("W/K", units::written("W/K").unwrap());
         assert_eq!(ParameterSet::read(&xml).unwrap(), set);
         assert!(
             xml.contains("description=\"95 % interval 0.00000015 to inf, standard error 0.25\"")

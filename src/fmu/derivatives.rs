@@ -22,6 +22,9 @@ impl Instance {
     fn jacobian(&mut self, unknowns: &[u32], knowns: &[u32]) -> Result<DMatrix<f64>, Wrong> {
         let phases = [Phase::Initialization, Phase::Event, Phase::Continuous, Phase::Step];
         self.expect(&phases, "derivatives are known from the initialization on")?;
+        if self.model.program.has_past() {
+            return Err("derivatives are not known: the model reads values of the past".into());
+        }
         let columns: Vec<Column> =
             knowns.iter().map(|known| self.column(*known)).collect::<Result<_, _>>()?;
         let mut variables: Vec<usize> = Vec::new();

@@ -114,6 +114,8 @@ pub(crate) struct State {
     pub(crate) inputs_changed: bool,
     /// How long the next step of its own integrator is meant to be, s.
     pub(crate) next_step: Option<f64>,
+    /// The time event that the last event update has announced.
+    announced: Option<f64>,
     /// Observed variables.
     observed: Evaluated,
     /// Derivatives of all states.
@@ -186,7 +188,13 @@ impl State {
             is_at_start: false,
             inputs_changed: false,
             next_step: None,
+            announced: None,
         }
+    }
+
+    /// Up to when what delays and pipes read is known; infinite without any.
+    fn known_until(&self) -> f64 {
+        self.time + self.system.longest_step()
     }
 }
 
@@ -202,6 +210,7 @@ struct Kept {
     is_at_start: bool,
     inputs_changed: bool,
     next_step: Option<f64>,
+    announced: Option<f64>,
     /// After the initialization.
     come_to: Option<Snapshot>,
 }
@@ -224,6 +233,7 @@ impl Instance {
             is_at_start: state.is_at_start,
             inputs_changed: state.inputs_changed,
             next_step: state.next_step,
+            announced: state.announced,
             come_to: state.is_initialized.then(|| state.system.snapshot()),
         };
         bytes_of(&kept).ok_or_else(|| "the state is too large".into())
@@ -257,11 +267,10 @@ impl Instance {
             }
             state.is_initialized = true;
         }
-        let Kept {
-            phase, experiment, time, x, given, is_at_start, inputs_changed, next_step, ..
-        } = kept;
+        let Kept { phase, experiment, time, x, given, .. } = kept;
+        let Kept { is_at_start, inputs_changed, next_step, announced, .. } = kept;
         let state = State { phase, experiment, time, x, given, ..state };
-        Ok(State { is_at_start, inputs_changed, next_step, ..state })
+        Ok(State { is_at_start, inputs_changed, next_step, announced, ..state })
     }
 
     pub(crate) fn new(model: Arc<Loaded>, kind: InterfaceKind) -> Instance {
@@ -326,6 +335,9 @@ impl Instance {
         let state = &mut self.state;
         let done = state.system.initialize(state.experiment.start, &mut state.x);
         done.map_err(|failure| self.explained(SimErrorKind::Initialization(failure)))?;
+        if self.state.known_until() <= self.state.time {
+            return Err("a `delay` by 0 s has no past: the unit cannot be simulated".into());
+        }
         self.state.is_initialized = true;
         self.state.is_at_start = true;
         self.passed_on = 0;
@@ -482,6 +494,7 @@ impl Instance {
 
     /// The observed variables in the mode at hand.
     fn observe(&mut self) -> Result<&[f64], Wrong> {
+        self.expect_past()?;
         let State { system, time, x, observed, .. } = &mut self.state;
         let done = observed.get(|out| system.observe(*time, x, out)).err();
         match done {
@@ -581,6 +594,7 @@ impl Instance {
         if self.state.phase == Phase::Initialization {
             self.initialize()?;
         }
+        self.expect_past()?;
         let State { system, time, x, derivatives, .. } = &mut self.state;
         if let Some(failure) = derivatives.get(|out| system.rhs(*time, x, out)).err() {
             return Err(self.discarded(failure));
@@ -589,6 +603,27 @@ impl Instance {
             true => Ok(&self.state.derivatives.values),
             false => Err(self.not_finite()),
         }
+    }
+
+    /// Refuses the end of a step over which a delayed value is not known yet.
+    fn expect_past(&self) -> Result<(), Wrong> {
+        let State { system, time, phase, .. } = &self.state;
+        if *phase != Phase::Continuous || system.knows_past(*time) {
+            return Ok(());
+        }
+        Err(Wrong::Discard(format!(
+            "the step to {time} s is longer than a `delay` of the model: it leads past an announced event"
+        )))
+    }
+
+    /// Shows the values at hand, which belong to the solution, to a model that needs its past.
+    fn remember(&mut self) -> Result<(), Wrong> {
+        let State { system, time, x, .. } = &mut self.state;
+        if !system.remembers() {
+            return Ok(());
+        }
+        let done = system.remember(*time, x);
+        done.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))
     }
 
     fn not_finite(&self) -> Wrong {
@@ -633,6 +668,7 @@ impl Instance {
         if self.state.phase == Phase::Initialization {
             self.initialize()?;
         }
+        self.expect_past()?;
         let State { system, time, x, indicators, .. } = &mut self.state;
         match indicators.get(|out| system.event_indicators(*time, x, out)).err() {
             Some(failure) => Err(self.discarded(failure)),
@@ -644,6 +680,9 @@ impl Instance {
         self.expect_events()?;
         let phases = [Phase::Continuous, Phase::Step, Phase::Event];
         self.expect(&phases, "events follow the initialization")?;
+        if self.state.phase == Phase::Continuous {
+            self.remember()?;
+        }
         self.state.phase = Phase::Event;
         Ok(())
     }
@@ -687,11 +726,15 @@ impl Instance {
             true => EventOutcome::Continue { y_changed: false },
             false => self.handle_event()?,
         };
+        // A step must not lead past what delays have recorded at its begin.
+        let known = Some(self.state.known_until()).filter(|time| time.is_finite());
+        let next = self.state.system.next_time_event(self.state.time);
+        self.state.announced = next.into_iter().chain(known).min_by(f64::total_cmp);
         Ok(Updated {
             needs_update: outcome == EventOutcome::Again,
             terminates: outcome == EventOutcome::Terminate,
             states_changed: before != self.state.x,
-            next_event: self.state.system.next_time_event(self.state.time),
+            next_event: self.state.announced,
         })
     }
 
@@ -705,15 +748,20 @@ impl Instance {
         let outcome = outcome.map_err(|f| self.explained(SimErrorKind::Evaluation(f)))?;
         self.state.inputs_changed = false;
         self.forget_values();
+        self.remember()?;
         Ok(outcome)
     }
 
-    /// Checks at the end of a step what must hold there.
-    pub(crate) fn complete_step(&mut self) -> Result<(), Wrong> {
+    /// Checks at the end of a step what must hold there; whether an event is to announce another time
+    /// event, because the content of a pipe has become faster.
+    pub(crate) fn complete_step(&mut self) -> Result<bool, Wrong> {
         self.expect(&[Phase::Continuous], "steps are made between events")?;
         let state = &mut self.state;
         let done = state.system.check(state.time, &state.x);
-        done.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))
+        done.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?;
+        self.remember()?;
+        let State { system, time, announced, .. } = &self.state;
+        Ok(time + 2.0 * system.longest_step() < announced.unwrap_or(f64::INFINITY))
     }
 
     pub(crate) fn terminate(&mut self) -> Result<(), Wrong> {

@@ -256,7 +256,9 @@ extern "C" fn fmi2CompletedIntegratorStep(
     call(instance, "fmi2CompletedIntegratorStep", |handle| {
         write(enter_event_mode, 0);
         write(terminates, 0);
-        handle.instance.complete_step()
+        let is_due = handle.instance.complete_step()?;
+        write(enter_event_mode, c_int::from(is_due));
+        Ok(())
     })
 }
 

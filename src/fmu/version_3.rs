@@ -372,7 +372,9 @@ extern "C" fn fmi3CompletedIntegratorStep(
     call(instance, "fmi3CompletedIntegratorStep", |handle| {
         write(enter_event_mode, false);
         write(terminates, false);
-        handle.instance.complete_step()
+        let is_due = handle.instance.complete_step()?;
+        write(enter_event_mode, is_due);
+        Ok(())
     })
 }
 

@@ -13,6 +13,7 @@ use crate::fmi::import::{
 use crate::sim::{
     DaeSystem, Failure, Settings, SimError, SimErrorKind, Simulator, Statistics, Trajectory,
 };
+use crate::units::Definitions;
 use std::sync::Arc;
 
 /// A unit with what an experiment sets.
@@ -149,6 +150,10 @@ impl Model for ImportedModel {
     fn unit(&self, variable: &str) -> Option<String> {
         let variable = self.variable(variable)?;
         Some(self.unit.description.attributes_of(variable).unit.unwrap_or_default())
+    }
+
+    fn unit_definitions(&self) -> Definitions {
+        self.unit.description.unit_definitions()
     }
 
     fn description(&self, variable: &str) -> Option<String> {

@@ -5,7 +5,7 @@
 
 // Modules and macros of lower crates, under the names that they have there.
 pub(crate) use gapilib_base::{
-    bail, codes, diag, elementary, fault, page, plot, registry, singular_values, source,
+    bail, codes, diag, elementary, fault, page, plot, registry, singular_values, source, units,
 };
 pub(crate) use gapilib_fmi as fmi;
 pub(crate) use gapilib_modelica::{codegen, runtime};

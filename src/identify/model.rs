@@ -3,6 +3,7 @@
 use crate::diag::{Diagnostic, Fault};
 use crate::fmi::description::DefaultExperiment;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory};
+use crate::units::Definitions;
 use serde::{Deserialize, Serialize};
 
 /// Output points where a model gives no interval.
@@ -40,6 +41,10 @@ pub trait Model: Send + Sync {
     fn names(&self) -> Vec<String>;
     /// The unit of a Real variable, empty if it has none; `None` if there is no such variable.
     fn unit(&self, variable: &str) -> Option<String>;
+    /// What names of units stand for that are not known, where the model says so.
+    fn unit_definitions(&self) -> Definitions {
+        Definitions::default()
+    }
     /// The description string of a variable; `None` if it has none.
     fn description(&self, _variable: &str) -> Option<String> {
         None

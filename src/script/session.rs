@@ -180,6 +180,12 @@ impl Session {
         self.report(diagnostic);
     }
 
+    /// Says something that may change the result, with the place of the call.
+    pub fn warn(&mut self, code: Code, message: String) {
+        let diagnostic = Fault::new(code, message).at(self.call_site()).warning();
+        self.report(diagnostic);
+    }
+
     /// What remains to be done when the outermost script ends, and how it ended.
     pub fn finish(&mut self) -> RunStatus {
         for work in std::mem::take(&mut self.at_end) {

@@ -7,28 +7,37 @@ const PARTS: i32 = 60;
 
 const SYMBOLS: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// What a unit measures: exponents of kg, m, s, A, K, mol and cd. Radians and steradians are
-/// numbers; factors such as that of `kPa` do not matter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Dimension([i32; 7]);
+/// What a unit measures: exponents of kg, m, s, A, K, mol, cd and rad; factors such as that of `kPa`
+/// do not matter. Radians are numbers where dimensions are compared or printed (SI brochure §2.3.4);
+/// their exponent distinguishes rad/s from Hz in the definitions of units that FMI has.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Dimension([i32; 8]);
+
+impl PartialEq for Dimension {
+    fn eq(&self, other: &Dimension) -> bool {
+        self.0[..SYMBOLS.len()] == other.0[..SYMBOLS.len()]
+    }
+}
+
+impl Eq for Dimension {}
 
 impl Dimension {
     /// That of a pure number.
-    pub(crate) const ONE: Dimension = Dimension([0; 7]);
+    pub(crate) const ONE: Dimension = Dimension([0; 8]);
 
     /// The dimension with whole exponents.
-    pub const fn new(exponents: [i32; 7]) -> Dimension {
-        let mut parts = [0; 7];
+    pub const fn new(exponents: [i32; 8]) -> Dimension {
+        let mut parts = [0; 8];
         let mut at = 0;
-        while at < 7 {
+        while at < 8 {
             parts[at] = exponents[at] * PARTS;
             at += 1;
         }
         Dimension(parts)
     }
 
-    /// The exponents of kg, m, s, A, K, mol and cd; `None` where one is broken.
-    pub fn exponents(self) -> Option<[i32; 7]> {
+    /// The exponents of kg, m, s, A, K, mol, cd and rad; `None` where one is broken.
+    pub fn exponents(self) -> Option<[i32; 8]> {
         let is_whole = self.0.iter().all(|parts| parts % PARTS == 0);
         is_whole.then(|| self.0.map(|parts| parts / PARTS))
     }
@@ -45,7 +54,7 @@ impl Dimension {
 
     /// The power; `None` if an exponent is not a multiple of 1/60.
     pub fn power(self, exponent: f64) -> Option<Dimension> {
-        let mut out = [0; 7];
+        let mut out = [0; 8];
         for (out, part) in out.iter_mut().zip(self.0) {
             let value = f64::from(part) * exponent;
             if value.fract() != 0.0 || value.abs() > 1e6 {
@@ -57,7 +66,7 @@ impl Dimension {
     }
 
     fn zip(self, other: Dimension, f: fn(i32, i32) -> Option<i32>) -> Option<Dimension> {
-        let mut out = [0; 7];
+        let mut out = [0; 8];
         for (at, out) in out.iter_mut().enumerate() {
             *out = f(self.0[at], other.0[at])?;
         }

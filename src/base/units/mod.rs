@@ -1,11 +1,13 @@
 //! Units of measurement (MLS §3.7, ch. 19; SI brochure): what they measure, how they convert, and
 //! how laboratories write them.
 
+mod definitions;
 mod dimension;
 mod parse;
 mod written;
 
 use crate::elementary;
+pub use definitions::Definitions;
 pub use dimension::Dimension;
 pub use parse::{dimension, unit};
 pub use written::{in_words, normalized, written};
@@ -36,7 +38,7 @@ impl Unit {
 
     /// The second.
     pub const SECOND: Unit =
-        Unit { dimension: Dimension::new([0, 0, 1, 0, 0, 0, 0]), factor: 1.0, offset: 0.0 };
+        Unit { dimension: Dimension::new([0, 0, 1, 0, 0, 0, 0, 0]), factor: 1.0, offset: 0.0 };
 
     /// The unit of a product.
     fn times(self, other: Unit) -> Option<Unit> {
@@ -56,6 +58,23 @@ impl Unit {
         // Powers of whole numbers by `powi` keep 1e-2^2 at 1e-4.
         let factor = elementary::powi(self.factor, exponent as i32);
         Some(Unit { dimension, factor, offset: 0.0 })
+    }
+
+    /// Whether two units are the same but for this part of their factors and zeros.
+    fn is_near(self, other: Unit, part: f64) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= part * a.abs().max(b.abs());
+        let is_same = near(self.factor, other.factor) && near(self.offset, other.offset);
+        self.dimension == other.dimension && is_same
+    }
+
+    /// For a message: `100000 kg/(m.s2)`, `1 K from 273.15 K on`.
+    fn in_words(self) -> String {
+        let Unit { dimension, factor, offset } = self;
+        let zero = match offset == 0.0 {
+            true => String::new(),
+            false => format!(" from {offset} {dimension} on"),
+        };
+        format!("{factor} {dimension}{zero}")
     }
 
     /// How values in this unit become values in `other`; `None` where they measure something else.

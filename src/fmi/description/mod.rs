@@ -11,7 +11,9 @@ mod write;
 mod tests;
 
 use crate::flatten::Experiment;
+use crate::units::{self, Definitions};
 pub use read::read;
+pub(crate) use read::unit as read_unit;
 pub use words::{Causality, DependencyKind, Initial, Kind, Variability};
 pub(crate) use write::base_unit;
 pub use write::write;
@@ -154,6 +156,25 @@ pub struct BaseUnit {
     pub factor: f64,
     /// Offset.
     pub offset: f64,
+}
+
+impl BaseUnit {
+    /// That of a unit; `None` where an exponent is broken.
+    pub(crate) fn of(unit: units::Unit) -> Option<BaseUnit> {
+        let exponents = unit.dimension.exponents()?;
+        Some(BaseUnit { exponents, factor: unit.factor, offset: unit.offset })
+    }
+
+    /// The unit; `None` where no value can be converted to it.
+    pub(crate) fn unit(&self) -> Option<units::Unit> {
+        const LARGEST: i32 = 1000;
+        let BaseUnit { exponents, factor, offset } = *self;
+        let is_usable = exponents.iter().all(|one| (-LARGEST..=LARGEST).contains(one))
+            && factor.is_normal()
+            && offset.is_finite();
+        let dimension = || units::Dimension::new(exponents);
+        is_usable.then(|| units::Unit { dimension: dimension(), factor, offset })
+    }
 }
 
 /// The base units, in the order of [`BaseUnit::exponents`].
@@ -369,6 +390,26 @@ pub struct Unknown {
 }
 
 impl Description {
+    /// What the names of its units and display units stand for, as far as it says.
+    pub fn unit_definitions(&self) -> Definitions {
+        let mut all = Definitions::default();
+        for own in &self.units {
+            let base = own.base.as_ref().and_then(BaseUnit::unit);
+            base.iter().for_each(|base| all.add(&own.name, *base));
+            let Some(base) = units::written(&own.name).or(base) else { continue };
+            let is_usable = |one: &&DisplayUnit| {
+                !one.is_inverse && one.factor.is_normal() && one.offset.is_finite()
+            };
+            let shown = own.display_units.iter().filter(is_usable);
+            for one in shown {
+                let offset = base.offset - base.factor * one.offset / one.factor;
+                let shown = units::Unit { factor: base.factor / one.factor, offset, ..base };
+                all.add(&one.name, shown);
+            }
+        }
+        all
+    }
+
     /// The variable of this name.
     pub fn find(&self, name: &str) -> Option<&Variable> {
         self.variables.iter().find(|variable| variable.name == name)

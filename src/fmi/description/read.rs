@@ -147,7 +147,8 @@ fn interface(element: &Element, version: Version) -> Result<Interface, FmuError>
     })
 }
 
-fn unit(element: &Element) -> Result<Unit, FmuError> {
+/// A unit, as FMI and SSP write it.
+pub(crate) fn unit(element: &Element) -> Result<Unit, FmuError> {
     let display = |one: &Element| {
         Ok(DisplayUnit {
             name: one.required("name")?.to_owned(),

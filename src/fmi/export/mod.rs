@@ -215,11 +215,14 @@ fn describe(
         model_identifier: identifier(model.unit_name),
         can_get_and_set_state: true,
         can_serialize_state: program.has_snapshots(),
-        provides_directional_derivatives: true,
-        provides_adjoint_derivatives: version == Version::V3,
+        provides_directional_derivatives: !program.has_past(),
+        provides_adjoint_derivatives: version == Version::V3 && !program.has_past(),
         ..Interface::default()
     };
-    let exchange = Interface { needs_completed_step: program.checks_steps(), ..interface.clone() };
+    let exchange = Interface {
+        needs_completed_step: program.checks_steps() || program.has_past(),
+        ..interface.clone()
+    };
     let co_simulation = Interface {
         can_handle_variable_steps: true,
         has_event_mode: version == Version::V3,

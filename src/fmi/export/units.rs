@@ -25,10 +25,7 @@ pub(super) fn units<'v>(variables: impl Iterator<Item = &'v Variable>) -> Vec<Un
 
 /// What a unit is in base units of SI.
 pub(crate) fn base(name: &str) -> Option<BaseUnit> {
-    let unit = units::unit(name)?;
-    let [kg, m, s, a, k, mol, cd] = unit.dimension.exponents()?;
-    let exponents = [kg, m, s, a, k, mol, cd, 0];
-    Some(BaseUnit { exponents, factor: unit.factor, offset: unit.offset })
+    BaseUnit::of(units::unit(name)?)
 }
 
 /// A unit for people; `None` where it measures something else.

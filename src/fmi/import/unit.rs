@@ -75,6 +75,7 @@ impl Unit {
             made => made,
         };
         let (component, identity) = made.map_err(|(error, said)| {
+            let said = named(said, description);
             let message = with_last_problem(error.to_string(), &said);
             messages.extend(said);
             SimulationFailure::new(settings.start, FailureClass::Instance, message)
@@ -88,7 +89,7 @@ impl Unit {
             };
         let run = Run { component, description, layout: &layout, plan, settings, has_event_mode };
         let ended = run.simulate(values, simulator, out);
-        let said = component.messages();
+        let said = named(component.messages(), description);
         let ended = ended.map_err(|failure| match failure.class {
             FailureClass::Unit => {
                 let message = with_last_problem(failure.message, &said);
@@ -111,6 +112,11 @@ impl Unit {
         self.binaries.push((kind, Arc::new(binary)));
         Ok(())
     }
+}
+
+/// Messages with the names of variables.
+fn named(said: Vec<LogMessage>, description: &Description) -> Vec<LogMessage> {
+    said.into_iter().map(|message| message.named(description)).collect()
 }
 
 /// A sentence, followed by the last warning or error that the unit has logged.

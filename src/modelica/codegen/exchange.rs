@@ -6,7 +6,6 @@ use super::program::{Program, VariableInfo};
 use super::sequence::close;
 use crate::causalize::Block;
 use crate::lower::VariableKind;
-use crate::source::Span;
 use crate::symbolic::{Expr, VarId, evaluate};
 use rustc_hash::FxHashSet;
 
@@ -68,7 +67,7 @@ impl Program {
 
     /// Number of event indicators of its systems.
     pub fn n_indicators(&self) -> usize {
-        self.n_crossings() + self.selections.len()
+        self.n_crossings() + self.selections.len() + 2 * self.events.transports.len()
     }
 
     /// Number of states.
@@ -77,7 +76,7 @@ impl Program {
     }
 
     /// What a variable of [`Program::variables`] is computed from between events; `None` where a loop is
-    /// solved on the way, or initial equations determine a parameter: it may follow from everything.
+    /// solved on the way, values of the past are read, or initial equations determine a parameter: it may follow from everything.
     pub fn needs_of(&self, variable: usize) -> Option<Needs> {
         let info = self.variables().get(variable)?;
         self.needs(self.resolve(info.variable).0)
@@ -103,7 +102,12 @@ impl Program {
     fn needs(&self, source: VarId) -> Option<Needs> {
         let dae = &self.sorted.dae;
         let mut needed = close(&dae.pool, &self.sequence, FxHashSet::from_iter([source]));
-        if self.continuous.iteration.iter().any(|unknown| needed.contains(unknown)) {
+        let events = &dae.events;
+        let of_past = events.delays.iter().map(|delay| delay.variable);
+        let piped =
+            events.transports.iter().flat_map(|own| own.outputs()).map(|(variable, _)| variable);
+        let loops = self.continuous.iteration.iter().copied();
+        if of_past.chain(piped).chain(loops).any(|unknown| needed.contains(&unknown)) {
             return None;
         }
         let mut open: Vec<VarId> = needed.iter().copied().collect();
@@ -202,12 +206,8 @@ impl Program {
         recordings.flat_map(|recording| &recording.tracks).any(|track| track.value.0 == number)
     }
 
-    /// What the model does that needs its own simulator, and where this is written: expressions of
-    /// the past.
-    pub fn needs_past(&self) -> Option<(&'static str, Span)> {
-        let events = &self.sorted.dae.events;
-        let delay = events.delays.first().map(|delay| ("`delay`", delay.span));
-        let transport = events.transports.first();
-        delay.or(transport.map(|own| ("`delay` or `spatialDistribution`", own.span())))
+    /// Whether the model needs values of the past: of `delay` or `spatialDistribution`.
+    pub fn has_past(&self) -> bool {
+        !(self.events.delays.is_empty() && self.events.transports.is_empty())
     }
 }

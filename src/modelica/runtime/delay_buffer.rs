@@ -5,6 +5,7 @@
 //! is read changes at events only, so that a step never sees both sides of a jump.
 
 use super::instants::same_time;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Points of one interpolation.
@@ -15,7 +16,7 @@ const SAME: f64 = 1e-9;
 const NEAR: f64 = 0.05;
 
 /// The past of one expression.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct History {
     /// Times, not descending; equal ones at a jump.
     times: VecDeque<f64>,
@@ -76,6 +77,21 @@ impl History {
         let after = self.times.partition_point(|time| *time <= t);
         let start = after.saturating_sub(n / 2).clamp(first, end - n);
         cubic(&self.times, &self.values, start..start + n, t)
+    }
+
+    /// Whether the value at this time has been recorded, or lies before the start.
+    pub(super) fn reaches(&self, t: f64) -> bool {
+        self.times.back().is_none_or(|last| t <= *last || same_time(t, *last))
+    }
+
+    /// Whether it can be read: it may come from another process.
+    pub(super) fn is_valid(&self) -> bool {
+        let n = self.times.len();
+        n > 0
+            && self.values.len() == n
+            && self.times.iter().is_sorted()
+            && self.first.into_iter().chain(self.jumps.iter().copied()).is_sorted_by(|a, b| a < b)
+            && self.jumps.back().copied().or(self.first).is_none_or(|last| last < n)
     }
 
     /// When the piece that is read ends, if the next one is known.

@@ -8,7 +8,13 @@ use crate::sim::Failure;
 impl System {
     /// Whether values of the past are needed.
     pub(super) fn has_past(&self) -> bool {
-        !self.delays.histories.is_empty() || !self.program.events.transports.is_empty()
+        self.program.has_past()
+    }
+
+    /// Whether delays read at `t` what has been recorded.
+    pub fn knows_past(&self, t: f64) -> bool {
+        let mut pairs = self.delays.histories.iter().zip(&self.delays.delay_times);
+        pairs.all(|(history, time)| history.reaches(t - time))
     }
 
     /// Sets the delayed values at `t`.

@@ -3,6 +3,7 @@
 
 use super::execution::{read, run};
 use super::instants::{Clock, Stage};
+use super::state::DelayState;
 use super::system::System;
 use crate::codegen::{Program, SensitivityCode};
 use crate::sim::{Failure, Residual};
@@ -21,6 +22,7 @@ pub struct Snapshot {
     given: Vec<(u32, f64)>,
     before: Vec<f64>,
     is_sampled: bool,
+    past: DelayState,
 }
 
 /// What is known of relations between events.
@@ -47,7 +49,7 @@ impl Program {
     /// Whether systems of it can continue from a [`Snapshot`]: states that are chosen while a model is
     /// simulated are not part of one.
     pub fn has_snapshots(&self) -> bool {
-        self.selections.is_empty() && self.needs_past().is_none()
+        self.selections.is_empty()
     }
 }
 
@@ -60,8 +62,12 @@ impl System {
     pub fn event_indicators(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load(t, y);
         self.solve(Stage::Continuous)?;
-        let (first, last) = out.split_at_mut(self.program.n_crossings());
+        self.agree_with_transported(t)?;
+        let (first, others) = out.split_at_mut(self.program.n_crossings());
+        let (last, transported) = others.split_at_mut(self.loops.choices.len());
         self.distances(first)?;
+        self.transported_crossings(t, transported)?;
+        transported.iter_mut().step_by(2).for_each(|z| *z = -*z);
         let choices = self.loops.choices.iter_mut().zip(&self.program.selections);
         for ((choice, selection), out) in choices.zip(last) {
             *out = choice.quality(selection, &mut self.registers)?;
@@ -86,7 +92,8 @@ impl System {
             let holds = self.registers[register as usize] != 0.0;
             self.relation_value(*at, holds, t) != holds
         });
-        Ok(changes || indicators[relations.len()..].iter().any(|z| *z < 0.0))
+        let others = relations.len()..program.n_crossings() + program.selections.len();
+        Ok(changes || indicators[others].iter().any(|z| *z < 0.0) || self.is_at_border(t)?)
     }
 
     /// Writes what the integrator holds, as the last evaluation has left it: states, and the unknowns of
@@ -237,6 +244,7 @@ impl System {
             given: events.given.clone(),
             before: events.before.clone(),
             is_sampled: events.sampled,
+            past: self.delays.clone(),
         }
     }
 
@@ -253,6 +261,7 @@ impl System {
             && snapshot.clocks.len() == events.clocks.len()
             && snapshot.knots_passed.len() == events.knots_passed.len()
             && snapshot.before.len() == events.before.len()
+            && snapshot.past.fits(&self.program)
             && snapshot.given.iter().all(|(at, _)| (*at as usize) < registers.len());
         if !fits {
             return false;
@@ -269,6 +278,7 @@ impl System {
         events.given = snapshot.given;
         events.before = snapshot.before;
         events.sampled = snapshot.is_sampled;
+        self.delays = snapshot.past;
         true
     }
 }

@@ -8,6 +8,8 @@
 
 use super::delay_buffer::{cubic, differ};
 use super::instants::AT_ONCE;
+use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::collections::VecDeque;
 
 /// Smallest distance of two points, relative to the next distance: nearer ones would amplify
@@ -20,7 +22,7 @@ const AT_BORDER: f64 = 1e-10;
 const LINE: usize = 4;
 
 /// The smooth part of a profile between two jumps.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 struct Piece {
     /// Coordinates, ascending.
     at: VecDeque<f64>,
@@ -30,7 +32,7 @@ struct Piece {
 }
 
 /// The profile, and the piece of it that is read.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Profile {
     /// With ascending coordinates; the end of one is the begin of the next.
     pieces: VecDeque<Piece>,
@@ -269,17 +271,36 @@ impl Profile {
     pub(super) fn locate(&mut self, s: f64, to: End) -> bool {
         let before = self.reading;
         loop {
-            let (below, above) = self.borders();
-            let rounding = AT_BORDER * self.scale + AT_ONCE * s.abs();
-            let margin = if to == End::High { -rounding } else { rounding };
-            if s > above + margin {
-                self.reading += 1;
-            } else if s < below + margin {
-                self.reading -= 1;
-            } else {
-                return self.reading != before;
+            match self.direction(s, to) {
+                Ordering::Greater => self.reading += 1,
+                Ordering::Less => self.reading -= 1,
+                Ordering::Equal => return self.reading != before,
             }
         }
+    }
+
+    /// Where the piece at `s` lies as seen from the one that is read, of two the one towards `to`.
+    pub(super) fn direction(&self, s: f64, to: End) -> Ordering {
+        let (below, above) = self.borders();
+        let rounding = AT_BORDER * self.scale + AT_ONCE * s.abs();
+        let margin = if to == End::High { -rounding } else { rounding };
+        if s > above + margin {
+            Ordering::Greater
+        } else if s < below + margin {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        }
+    }
+
+    /// Whether it can be read: it may come from another process.
+    pub(super) fn is_valid(&self) -> bool {
+        let is_filled = |piece: &Piece| {
+            !piece.at.is_empty()
+                && piece.at.len() == piece.values.len()
+                && piece.at.iter().is_sorted()
+        };
+        self.reading < self.pieces.len() && self.pieces.iter().all(is_filled)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::codegen::code::Outputs;
 use crate::codegen::program::Program;
 use crate::sim::{Failure, Pattern};
 use crate::symbolic::VarId;
+use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
 /// What is known of the relations between events.
@@ -108,7 +109,7 @@ pub(super) struct LoopState {
 }
 
 /// What delays and pipes remember.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct DelayState {
     /// The past of delayed expressions, and by how much they are delayed.
     pub(super) histories: Vec<History>,
@@ -124,6 +125,15 @@ impl DelayState {
             delay_times: vec![0.0; program.events.delays.len()],
             transported: Vec::new(),
         }
+    }
+
+    /// Whether it is one of this program that has been started.
+    pub(super) fn fits(&self, program: &Program) -> bool {
+        self.histories.len() == program.events.delays.len()
+            && self.delay_times.len() == self.histories.len()
+            && self.transported.len() == program.events.transports.len()
+            && self.histories.iter().all(History::is_valid)
+            && self.transported.iter().all(|record| record.profile.is_valid())
     }
 }
 

@@ -7,6 +7,7 @@
 //! to avoid an algebraic loop; here the straight line through the last ones leads on from it.
 
 use super::profile::{End, Profile};
+use serde::{Deserialize, Serialize};
 
 /// The part of the longest delay that steps may be long, however short the delay is: so far the last
 /// values are extrapolated.
@@ -16,7 +17,7 @@ const SHORTEST_DELAY: f64 = 1e-3;
 const LONGEST_MOVE: f64 = 0.1;
 
 /// What has been recorded of one of them.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Record {
     pub profile: Profile,
     /// The longest delay, or the length of the pipe.

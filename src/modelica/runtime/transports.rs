@@ -112,6 +112,18 @@ impl System {
         Ok(())
     }
 
+    /// Whether the piece that is read has ended at `t`, all registers of states and events being loaded.
+    pub(super) fn is_at_border(&mut self, t: f64) -> Result<bool, Failure> {
+        let program = self.program.clone();
+        for (code, record) in program.events.transports.iter().zip(&self.delays.transported) {
+            let place = place(code, &mut self.registers, t)?;
+            if record.profile.direction(place.at, place.from).is_ne() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// The longest step for which what is read is recorded before it.
     pub(super) fn longest_transport(&self) -> f64 {
         let codes = self.program.events.transports.iter().zip(&self.delays.transported);

@@ -148,15 +148,6 @@ fn of_program(
     form: Form<'_>,
 ) -> Result<Unit, Fault> {
     let program = &model.program;
-    if let Some((what, span)) = program.needs_past() {
-        let place = session.sources.location(span);
-        return Err(fault!(
-            NOT_SUPPORTED,
-            "`{problem}` cannot be exported: {what} ({place}) needs values of the past, which a unit \
-             does not keep";
-            help: "replace it, such as by a first-order element"
-        ));
-    }
     for (input, rate) in &made.rates {
         if program.find_parameter(rate).is_ok_and(|at| program.reads_parameter_twice(at)) {
             return Err(reads_derivative(input));

@@ -9,7 +9,8 @@ use crate::fmi::ParameterSet;
 use crate::fmi::import::Imported;
 use crate::fmi::parameter_set::{ENDING, Parameter, ParameterValue};
 use crate::identify::errors::UNITS_DIFFER;
-use crate::{bail, fault, units};
+use crate::units::Definitions;
+use crate::{bail, fault};
 use std::path::Path;
 
 /// Whether a path is that of a file with values of parameters.
@@ -40,7 +41,7 @@ pub fn set(session: &mut Session, path: &Path) -> Result<(), Fault> {
     let set = read(session, path)?;
     for parameter in &set.parameters {
         let unit = unit_of(session, &parameter.name);
-        let value = session.converted(parameter, unit, path)?;
+        let value = session.converted((parameter, &set.units), unit, path)?;
         session.set_parameter_text(&parameter.name, &text(&value))?;
     }
     Ok(())
@@ -65,7 +66,8 @@ fn unit_of(session: &Session, name: &str) -> Option<VariableUnit> {
     let model = session.last_model()?;
     let at = model.program.find_variable(name).ok()?;
     let variable = &model.program.variables()[at];
-    Some(VariableUnit { symbol: variable.unit.to_string(), is_relative: variable.is_relative })
+    let (symbol, is_relative) = (variable.unit.to_string(), variable.is_relative);
+    Some(VariableUnit { symbol, is_relative, ..VariableUnit::default() })
 }
 
 /// Adds the values of a file to those of a unit.
@@ -77,10 +79,11 @@ pub fn give(
     path: &Path,
     (unit, given): (&Imported, &mut Given),
 ) -> Result<(), Fault> {
-    for parameter in &read(session, path)?.parameters {
+    let set = read(session, path)?;
+    for parameter in &set.parameters {
         let own = unit.description.find(&parameter.name);
         let own = own.map(|own| VariableUnit::of_imported(unit, own));
-        let value = session.converted(parameter, own, path)?;
+        let value = session.converted((parameter, &set.units), own, path)?;
         given.add(unit, &parameter.name, &text(&value))?;
     }
     Ok(())
@@ -91,27 +94,38 @@ impl Session {
     /// of the file.
     fn converted(
         &mut self,
-        parameter: &Parameter,
+        parameter: (&Parameter, &Definitions),
         own: Option<VariableUnit>,
         path: &Path,
     ) -> Result<ParameterValue, Fault> {
-        let (value, sentence) = in_unit(parameter, &own.unwrap_or_default(), path)?;
-        sentence.into_iter().for_each(|sentence| self.note(UNITS_DIFFER, sentence));
+        let (value, said) = in_unit(parameter, &own.unwrap_or_default(), path)?;
+        said.note.into_iter().for_each(|sentence| self.note(UNITS_DIFFER, sentence));
+        said.warnings.into_iter().for_each(|sentence| self.warn(UNITS_DIFFER, sentence));
         Ok(value)
     }
 }
 
-/// A value in the unit of its variable, and a sentence where it was in another one. Where one of the
-/// units is not said, the value is taken as it is.
+/// What is to be said of a value that was in another unit than its variable.
+#[derive(Debug, Default)]
+pub(crate) struct Said {
+    /// How it was converted.
+    pub(crate) note: Option<String>,
+    /// Units that a file defines otherwise than they are known.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A value in the unit of its variable, and what is to be said where it was in another one. Names of units
+/// that are not known are those of the set, or of the model. Where one of the units is not said, the value is
+/// taken as it is.
 ///
 /// # Errors
 /// Units that are not known, or do not measure the same.
 pub(crate) fn in_unit(
-    parameter: &Parameter,
+    (parameter, units): (&Parameter, &Definitions),
     own: &VariableUnit,
     file: &Path,
-) -> Result<(ParameterValue, Option<String>), Fault> {
-    let unchanged = || (parameter.value.clone(), None);
+) -> Result<(ParameterValue, Said), Fault> {
+    let unchanged = || (parameter.value.clone(), Said::default());
     let (ParameterValue::Number(value), Some(from)) = (&parameter.value, parameter.unit.as_deref())
     else {
         return Ok(unchanged());
@@ -120,21 +134,26 @@ pub(crate) fn in_unit(
     if from == to || to.is_empty() {
         return Ok(unchanged());
     }
-    let absolute = units::written(from).zip(units::written(to)).and_then(|(from, to)| from.to(to));
+    let of_set = units.contradiction(from, &format!("`{file}`"));
+    let warnings: Vec<String> = of_set.into_iter().chain(own.contradictions([from, to])).collect();
+    let read = units.find(from).or_else(|| own.definitions.defined(from));
+    let absolute = read.zip(own.definitions.find(to)).and_then(|(from, to)| from.to(to));
     let Some(absolute) = absolute else {
-        bail!(
+        let fault = fault!(
             BAD_FMU,
             "`{name}` in `{file}` is in {from}, which cannot be converted to {to}";
             help: "write its value there in {to}"
         );
+        return Err(fault.help_if(warnings.into_iter().next()));
     };
     let conversion = if own.is_relative { absolute.of_differences() } else { absolute };
     if conversion.is_identity() {
-        return Ok(unchanged());
+        return Ok((parameter.value.clone(), Said { note: None, warnings }));
     }
     let words = conversion.in_words();
-    let sentence = format!("`{name}` in `{file}` is converted from {from} to {to}{words}");
-    Ok((ParameterValue::Number(conversion.apply(*value)), Some(sentence)))
+    let note = format!("`{name}` in `{file}` is converted from {from} to {to}{words}");
+    let said = Said { note: Some(note), warnings };
+    Ok((ParameterValue::Number(conversion.apply(*value)), said))
 }
 
 fn text(value: &ParameterValue) -> String {

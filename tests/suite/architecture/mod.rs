@@ -143,6 +143,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "singular_values",
             "registry",
             "name",
+            "units",
             "source",
             "diag",
         ],

@@ -289,6 +289,7 @@ fn the_estimates_of_a_fit_are_given_away() {
             unit: Some("1/h".to_owned()),
             estimate: None,
         }],
+        ..ParameterSet::default()
     };
     fs::write(here.path().join("hours.ssv"), per_hour.to_xml()).expect("written");
     let second = |model: &str| {
@@ -621,9 +622,12 @@ fn unknown_units_of_data_are_warned_of() {
         let more = ["--input", "u.csv", "--stop-time", "1", "--output", "o.csv", "--set"];
         let simulate =
             |set: &str| gapi(&here, &[&["simulate"], source, &more, &[set][..]].concat());
-        let (code, out, errors) = simulate("mode=Mode.on");
+        let (code, _, errors) = simulate("mode=Mode.on");
         let text = errors.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(code == 0 && text.contains(said), "{out}{errors}");
+        assert!(
+            code == 0 && text.contains(&format!("warning[data-note]: u.csv: {said}")),
+            "{text}"
+        );
         let all = columns(&here.path().join("o.csv"));
         near(*column(&all, "x").last().expect("a row"), 11.0, 1e-5);
         let (code, _, errors) = simulate("mode=Mode.slow");
@@ -643,6 +647,7 @@ fn the_set_beside_a_unit_has_its_values() {
     let set = ParameterSet {
         name: "set".to_owned(),
         parameters: vec![parameter("k"), parameter("level")],
+        ..ParameterSet::default()
     };
     let here = folder(&[("P.mo", DECAY), ("s.ssv", &set.to_xml()), ("unit.ssv", "<other/>")]);
     let base =
@@ -670,4 +675,246 @@ fn a_unit_that_ends_within_a_step_has_a_last_row() {
         near(*column(&all, "time").last().expect("a row"), 1.0, 1e-6);
         near(*column(&all, "y").last().expect("a row"), 1.0, 1e-6);
     }
+}
+
+/// Replaces a part of the description of `unit.fmu`.
+fn edit_description(here: &TempDir, from: &str, to: &str) {
+    let path = here.path().join("unit.fmu");
+    let bytes = fs::read(&path).expect("a unit");
+    let mut archive = Archive::read(std::io::Cursor::new(bytes)).expect("an archive");
+    let text = archive.file("modelDescription.xml").expect("a description").to_vec();
+    let text = String::from_utf8(text).expect("text");
+    assert!(text.contains(from), "{from}: {text}");
+    archive.insert("modelDescription.xml", text.replace(from, to));
+    fs::write(&path, archive.to_bytes().expect("bytes")).expect("written");
+}
+
+/// Radians are a base unit in descriptions: rad/s is not Hz.
+#[test]
+fn radians_are_a_base_unit_of_descriptions() {
+    let text = "model M output Real w(unit = \"rad/s\") = 1; output Real n(unit = \"rpm\") = 2; \
+                output Real f(unit = \"Hz\") = 3; output Real c(unit = \"N.m/rad\") = 4; end M;";
+    let here = folder(&[("M.mo", text)]);
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "M.mo", "--fmi", version, "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &export);
+        assert_eq!(code, 0, "{out}{errors}");
+        let bytes = fs::read(here.path().join("unit.fmu")).expect("a unit");
+        let archive = Archive::read(std::io::Cursor::new(bytes)).expect("an archive");
+        let text = archive.file("modelDescription.xml").expect("a description");
+        let description = description::read(text).expect("a description");
+        let exponents = |name: &str| {
+            let unit = description.units.iter().find(|unit| unit.name == name).expect("a unit");
+            let base = unit.base.as_ref().expect("a base unit").exponents;
+            [base[0], base[1], base[2], base[7]]
+        };
+        let all = ["rad/s", "rpm", "Hz", "N.m/rad"].map(exponents);
+        assert_eq!(all, [[0, 0, -1, 1], [0, 0, -1, 1], [0, 0, -1, 0], [1, 2, -2, -1]]);
+    }
+}
+
+/// Where the name of a unit is not known, data and sets are converted as the description and the set define
+/// it; a definition that contradicts a known name is warned of.
+#[test]
+fn units_are_converted_as_files_define_them() {
+    let text = "model M parameter Real k(unit = \"hp\") = 1; parameter Real p(unit = \"bar\") = 2; \
+                input Real u(unit = \"hp\"); Real x(start = 0, fixed = true); \
+                output Real y(unit = \"hp\") = k + u; equation der(x) = u; end M;";
+    let set = "<ParameterSet version=\"1.0\" name=\"s\"><Parameters><Parameter name=\"k\">\
+               <Real value=\"3\" unit=\"ox\"/></Parameter></Parameters><Units><Unit name=\"ox\">\
+               <BaseUnit kg=\"1\" m=\"2\" s=\"-3\" factor=\"500\"/></Unit></Units></ParameterSet>";
+    let here = folder(&[
+        ("M.mo", text),
+        ("s.ssv", set),
+        ("p.ssv", &set.replace("\"k\"", "\"p\"").replace("ox", "Pa").replace("500", "1")),
+        ("hp.csv", "time,u [hp]\n0,4\n1,4\n"),
+        ("W.csv", "time,u [W]\n0,1000\n1,1000\n"),
+        ("mW.csv", "time,u [mule]\n0,8\n1,8\n"),
+    ]);
+    let export = ["export-fmu", "M.mo", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    let definition = "<Unit name=\"hp\"><BaseUnit kg=\"1\" m=\"2\" s=\"-3\" factor=\"250\"/>\
+                      <DisplayUnit name=\"mule\" factor=\"2\"/></Unit>";
+    edit_description(&here, "<Unit name=\"hp\"/>", definition);
+    let simulate = |more: &[&str]| {
+        let base = ["simulate", "unit.fmu", "--allow-external", "--stop-time", "1"];
+        let output = ["--output", "o.csv"];
+        let (code, out, errors) = gapi(&here, &[&base, more, &output].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        let all = columns(&here.path().join("o.csv"));
+        (*column(&all, "y").last().expect("a row"), errors.replace("\n", " "))
+    };
+    for (data, is_noted) in [("hp.csv", false), ("W.csv", true), ("mW.csv", true)] {
+        let (y, errors) = simulate(&["--input", data]);
+        near(y, 5.0, 1e-9);
+        assert_eq!(errors.contains("`u` is converted from"), is_noted, "{errors}");
+        assert!(!errors.contains("warning["), "{errors}");
+    }
+    // 3 ox of the set are 6 hp of the description.
+    let (y, errors) = simulate(&["--set-file", "s.ssv", "--input", "hp.csv"]);
+    near(y, 10.0, 1e-9);
+    assert!(errors.contains("is converted from ox to hp, times 2"), "{errors}");
+    let outputs = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+                   [[experiment]]\ndata = \"y.csv\"\noutputs = { y = \"y\" }\n";
+    fs::write(here.path().join("y.csv"), "time,y [W]\n0,750\n0.5,751\n1,749\n").expect("written");
+    fs::write(here.path().join("p.toml"), outputs).expect("written");
+    let (code, out, errors) =
+        gapi(&here, &["identify", "p.toml", "--allow-external", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
+    let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    near(result["parameters"][0]["value"].as_f64().expect("a number"), 3.0, 1e-6);
+    let bar = "<Unit name=\"bar\">\n      <BaseUnit kg=\"1\" m=\"-1\" s=\"-2\" factor=\"100000\"/>";
+    edit_description(&here, bar, &bar.replace("100000", "1000"));
+    let (_, errors) = simulate(&["--set-file", "p.ssv"]);
+    let text = errors.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = "the FMU defines the unit `bar` as 1000 kg/(m.s2); it is used as 100000 kg/(m.s2)";
+    assert!(text.contains("warning[units-differ]") && text.contains(said), "{text}");
+}
+
+/// A model with values of the past gives the same results as its unit, whoever integrates.
+#[test]
+fn units_with_delays_give_what_the_model_gives() {
+    let text = "model M input Real u; parameter Real T = 0.3; Real x(start = 1, fixed = true); \
+                Real s(start = 0, fixed = true); output Real a = delay(u, T); output Real w; \
+                output Integer n = integer(delay(3*u, 0.4)); output Real b = delay(x, 0.2 + 0.1*x, 1); \
+                equation der(x) = u - 2*delay(x, T); der(s) = 1 + 0.5*x; \
+                (, w) = spatialDistribution(x, 0, s, true, {0, 1}, {1, 0}); \
+                annotation(experiment(StopTime = 3, Tolerance = 1e-8)); end M;";
+    let data = "time,u\n0,0\n0.5,0\n0.5,1\n1.5,1\n1.5,0.4\n3,0.4\n";
+    let here = folder(&[("M.mo", text), ("u.csv", data)]);
+    let more = ["--input", "u.csv", "--intervals", "30", "--output", "o.csv"];
+    let run = |source: &[&str]| {
+        let (code, out, errors) = gapi(&here, &[&["simulate"], source, &more].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        columns(&here.path().join("o.csv"))
+    };
+    let own = run(&["M.mo", "--model", "M"]);
+    // Values beside jumps: of a at 0.8 and 1.8 s, of n at 0.9 and 1.9 s.
+    let is_clear =
+        |t: f64| [0.5, 0.8, 0.9, 1.5, 1.8, 1.9].iter().all(|jump| (t - jump).abs() > 1e-6);
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "M.mo", "--fmi", version, "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &export);
+        assert_eq!(code, 0, "{out}{errors}");
+        for method in ["dassl", "co-simulation"] {
+            let unit = run(&["unit.fmu", "--allow-external", "--method", method]);
+            for name in ["x", "a", "w", "n", "b"] {
+                let rows = |all: &[(String, Vec<f64>)]| -> Vec<(f64, f64)> {
+                    let rows = column(all, "time").iter().zip(column(all, name));
+                    let on_grid = |t: f64| (10.0 * t - (10.0 * t).round()).abs() < 1e-9;
+                    let kept =
+                        rows.map(|(t, y)| (*t, *y)).filter(|(t, _)| on_grid(*t) && is_clear(*t));
+                    kept.collect()
+                };
+                let (expected, found) = (rows(&own), rows(&unit));
+                for (t, y) in &expected {
+                    let same = found.iter().find(|(at, _)| (at - t).abs() < 1e-9);
+                    let (_, value) = same.unwrap_or_else(|| panic!("no row at {t}"));
+                    assert!(
+                        (value - y).abs() < 2e-4,
+                        "{version} {method} {name} at {t}: {value}, {y}"
+                    );
+                }
+                assert!(expected.len() > 20, "{} rows", expected.len());
+            }
+        }
+    }
+}
+
+/// Data that begin before the start time of a unit are compared from their first row on, as with a model.
+#[test]
+fn fits_begin_with_data_before_the_start_time() {
+    let text = "model M parameter Real k = 1; Real x(start = 1, fixed = true); output Real y = x; \
+                equation der(x) = -k*x; annotation(experiment(StartTime = 10, StopTime = 12)); end M;";
+    let row = |n: u32| {
+        let t = 0.1 * f64::from(n);
+        format!("{},{}\n", 8.0 + t, (-2.0 * t).exp() + 1e-6 * (37.0 * t).sin())
+    };
+    let data: String = (0..=20).map(row).collect();
+    let here = folder(&[("M.mo", text), ("d.csv", &format!("time,y\n{data}"))]);
+    let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    for (model, folder) in [("M\"\nfiles = [\"M.mo\"]", "o"), ("unit.fmu\"", "u")] {
+        let problem = format!(
+            "model = \"{model}\n[parameters]\nk = {{ min = 0.1, max = 10 }}\n[[experiment]]\n\
+             data = \"d.csv\"\noutputs = {{ y = \"y\" }}\n"
+        );
+        fs::write(here.path().join("p.toml"), problem).expect("written");
+        let identify = ["identify", "p.toml", "--allow-external", "--out", folder];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join(folder).join("result.json"));
+        let text = text.expect("a result");
+        assert!(text.contains("the simulation begins with the first row, at 8 s"), "{text}");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), 2.0, 1e-4);
+    }
+}
+
+/// Literals of enumerations are values in problem files and modifications of units; commands that set initial
+/// values take their numbers.
+#[test]
+fn literals_are_values_of_units() {
+    let text = "model M type Mode = enumeration(off, on); parameter Mode mode = Mode.off; \
+                parameter Real k = 1; Real x(start = 1, fixed = true); output Real y = x; equation \
+                der(x) = -k*x*(if mode == Mode.on then 2 else 1); annotation(experiment(Tolerance = 1e-9)); \
+                end M;";
+    let row = |n: u32| format!("{},{}\n", 0.05 * f64::from(n), (-0.1 * f64::from(n)).exp());
+    let data: String = (0..=20).map(row).collect();
+    let script = "importFMU(\"unit.fmu\")\n\
+                  simulateModel(\"M_fmu(mode = Mode.on)\", stopTime=1, resultFile=\"a\")\n\
+                  y = readTrajectory(\"a.mat\", {\"y\"}, readTrajectorySize(\"a.mat\"))\n\
+                  print(String(y[1, end], significantDigits=9))\n\
+                  (ok, z) = simulateExtendedModel(\"M_fmu(mode = M.Mode.on)\", stopTime=1, \
+                  initialNames={\"k\"}, initialValues={2}, finalNames={\"y\"})\n\
+                  print(String(z[1], significantDigits=9))\n\
+                  (ok, z) = simulateExtendedModel(\"M_fmu\", stopTime=1, initialNames={\"k\", \"mode\"}, \
+                  initialValues={3, 2}, finalNames={\"y\"})\n\
+                  print(String(z[1], significantDigits=9))\n\
+                  simulateModel(\"M_fmu(mode = Mode.slow)\", stopTime=1)\n";
+    let here = folder(&[("M.mo", text), ("d.csv", &format!("time,y\n{data}")), ("s.mos", script)]);
+    let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let (_, out, errors) = gapi(&here, &["run", "s.mos", "--allow-external", "--out", "s"]);
+    let text = format!("{out}{errors}");
+    for (at, exponent) in [-2.0f64, -4.0, -6.0].iter().enumerate() {
+        near(number_after(&text, at), exponent.exp(), 1e-5);
+    }
+    assert!(text.contains("its literals are off, on"), "{text}");
+    for (mode, k) in [("on", Some(1.0)), ("Mode.on", Some(1.0)), ("off", Some(2.0)), ("slow", None)]
+    {
+        let problem = format!(
+            "model = \"unit.fmu\"\n[parameters]\nk = {{ min = 0.1, max = 10 }}\n[[experiment]]\n\
+             data = \"d.csv\"\noutputs = {{ y = \"y\" }}\nset = {{ mode = \"{mode}\" }}\n"
+        );
+        fs::write(here.path().join("p.toml"), problem).expect("written");
+        let identify = ["identify", "p.toml", "--allow-external", "--out", mode];
+        let (code, out, errors) = gapi(&here, &identify);
+        let Some(k) = k else {
+            assert!(code == 1 && errors.contains("its literals are off, on"), "{out}{errors}");
+            continue;
+        };
+        assert_eq!(code, 0, "{out}{errors}");
+        let path = here.path().join(mode).join("result.json");
+        let text = fs::read_to_string(path).expect("a result");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), k, 1e-4);
+    }
+}
+
+/// Platforms that a script asks for by name are noted, those of every importer are not.
+#[test]
+fn platforms_of_a_build_are_noted() {
+    let script = "loadFile(\"P.mo\");\n\
+                  buildModelFMU(P.Decay, platforms={\"static\", \"x86_64-w64-mingw32\"});\n\
+                  getErrorString();\n";
+    let here = folder(&[("P.mo", DECAY), ("s.mos", script)]);
+    let (_, out, errors) = exporting(&here, &["run", "s.mos", "--out", "o"]);
+    let text = format!("{out}{errors}").replace('\n', " ");
+    let said = "has no effect: the unit is for the platform of this program alone";
+    assert!(text.contains(&format!("`x86_64-w64-mingw32` {said}")), "{text}");
+    assert!(!text.contains("`static`"), "{text}");
+    assert!(here.path().join("P.Decay.fmu").exists() || here.path().join("o/P.Decay.fmu").exists());
 }

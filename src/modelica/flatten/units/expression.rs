@@ -10,7 +10,7 @@ use crate::syntax::ast::{
 };
 use crate::units::Dimension;
 
-const SECOND: Dimension = Dimension::new([0, 0, 1, 0, 0, 0, 0]);
+const SECOND: Dimension = Dimension::new([0, 0, 1, 0, 0, 0, 0, 0]);
 
 /// What an operator compares, as messages call it; `None` if its operands may differ.
 pub fn compared(operator: BinaryOperator) -> Option<&'static str> {

@@ -2,13 +2,15 @@
 //! strange is noted.
 
 use super::file::{ColumnEntry, SigmaEntry};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
 use crate::identify::problem::{Finding, FindingKind, Severity};
+use crate::mat::errors::DATA_NOTE;
 use crate::mat::{About, Column, MatFile};
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
-use crate::units::{Conversion, Unit, in_words, written};
+use crate::units::{Conversion, Unit, in_words};
 
 /// A column in the unit of its variable.
 pub(super) struct Measured {
@@ -26,6 +28,14 @@ pub(super) struct Note {
 }
 
 impl Note {
+    /// Says it before a run.
+    pub(super) fn say(&self, session: &mut Session) {
+        match self.severity {
+            Severity::Information => session.note(DATA_NOTE, self.sentence.clone()),
+            _ => session.warn(DATA_NOTE, self.sentence.clone()),
+        }
+    }
+
     pub(super) fn finding(self) -> Finding {
         Finding::new(FindingKind::Data, self.sentence).severity(self.severity)
     }
@@ -130,7 +140,7 @@ fn converted(
     let unchanged = || scaled(1.0, &|value| value);
     let explicit = entry.unit.as_deref();
     let own = entry.column.as_deref().unwrap_or(name);
-    let Some(given) = explicit.or(column.about.unit.as_deref()) else {
+    let Some(given) = explicit.or_else(|| unit_of(&column.about, variable)) else {
         let unknown = column.about.unknown_unit.iter();
         notes.warn_about(table, unknown.map(|given| unknown_unit([own, given, name, unit])));
         return Ok(unchanged());
@@ -140,7 +150,7 @@ fn converted(
     }
     if unit.is_empty() && explicit.is_none() {
         let is_coherent = |unit: Unit| unit.factor == 1.0 && unit.offset == 0.0;
-        let scaled = written(given).filter(|unit| !is_coherent(*unit));
+        let scaled = variable.definitions.find(given).filter(|unit| !is_coherent(*unit));
         notes.about(table, scaled.map(|_| {
             format!(
                 "`{own}` is in {given}, but `{name}` has no unit: its values are used as they are; \
@@ -149,9 +159,12 @@ fn converted(
         }));
         return Ok(unchanged());
     }
-    let (Some(from), Some(to)) = (written(given), written(unit)) else {
+    let contradictions = variable.contradictions([given, unit]);
+    let refused = || incompatible(name, unit, given).help_if(contradictions.first().cloned());
+    let find = |name: &str| variable.definitions.find(name);
+    let (Some(from), Some(to)) = (find(given), find(unit)) else {
         if explicit.is_some() {
-            return Err(incompatible(name, unit, given));
+            return Err(refused());
         }
         notes.warn_about(table, [format!(
             "`{own}` is in {given} and `{name}` is in {unit}; these units are not comparable, so \
@@ -159,7 +172,8 @@ fn converted(
         )]);
         return Ok(unchanged());
     };
-    let Some(absolute) = from.to(to) else { return Err(incompatible(name, unit, given)) };
+    let Some(absolute) = from.to(to) else { return Err(refused()) };
+    notes.warn_about(table, contradictions);
     let conversion = if variable.is_relative { absolute.of_differences() } else { absolute };
     if absolute.is_identity() {
         return Ok(unchanged());
@@ -167,6 +181,14 @@ fn converted(
     let words = conversion.in_words() + zero_of_scale(conversion, absolute);
     notes.about(table, [format!("`{own}` is converted from {given} to {unit}{words}")]);
     Ok(scaled(conversion.factor, &|value| conversion.apply(value)))
+}
+
+/// The unit of a column as its file says, if it is known to us, to the model, or the same as that of the
+/// variable.
+fn unit_of<'c>(about: &'c About, variable: &VariableUnit) -> Option<&'c str> {
+    let is_known =
+        |name: &&str| *name == variable.symbol || variable.definitions.find(name).is_some();
+    about.unit.as_deref().or(about.unknown_unit.as_deref().filter(is_known))
 }
 
 /// A sentence about a column with a unit that is not known.
@@ -219,12 +241,13 @@ fn incompatible(name: &str, unit: &str, given: &str) -> Fault {
 pub(super) fn sigma_factor(
     table: &MatFile,
     sigma: Option<&SigmaEntry>,
-    unit: &str,
+    variable: &VariableUnit,
     values: f64,
 ) -> f64 {
     let Some(SigmaEntry::Words(name)) = sigma else { return values };
-    let own = table.column(name).ok().and_then(|column| written(&column.about.unit?));
-    let conversion = own.zip(written(unit)).and_then(|(own, unit)| own.to(unit));
+    let find = |name: &str| variable.definitions.find(name);
+    let own = table.column(name).ok().and_then(|one| find(unit_of(&one.about, variable)?));
+    let conversion = own.zip(find(&variable.symbol)).and_then(|(own, unit)| own.to(unit));
     conversion.map_or(values, |conversion| conversion.factor)
 }
 

@@ -465,9 +465,7 @@ fn check(session: &mut Session, text: &str) -> Option<String> {
     });
     match built {
         Ok(notes) => {
-            for note in notes {
-                session.note(mat::errors::DATA_NOTE, note.sentence);
-            }
+            notes.iter().for_each(|note| note.say(session));
             None
         }
         Err(errors) => errors.first().map(|error| {

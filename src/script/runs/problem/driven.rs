@@ -155,9 +155,7 @@ impl InputColumns {
 
     /// Notes what should be known of the data.
     pub(super) fn tell(self, session: &mut Session) {
-        for note in self.notes.into_notes() {
-            session.note(crate::mat::errors::DATA_NOTE, note.sentence);
-        }
+        self.notes.into_notes().iter().for_each(|note| note.say(session));
     }
 }
 

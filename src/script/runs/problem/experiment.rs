@@ -330,7 +330,7 @@ impl Source<'_> {
     }
 
     /// When the simulation begins, if not where the model says or at 0: a part begins with its first
-    /// row, and so does an experiment that was measured before 0.
+    /// row, and so does an experiment that was measured before that.
     pub(super) fn begin(
         &self,
         annotated: Option<f64>,
@@ -342,10 +342,10 @@ impl Source<'_> {
         if self.segment.number > 0 {
             return first;
         }
-        if self.entry.start_time.is_some() || annotated.is_some() {
+        if self.entry.start_time.is_some() {
             return self.entry.start_time;
         }
-        let first = first.filter(|first| *first < 0.0)?;
+        let first = first.filter(|first| *first < annotated.unwrap_or(0.0))?;
         notes.add(format!(
             "{}: the simulation begins with the first row, at {first} s; the initial values are \
              those of this time",

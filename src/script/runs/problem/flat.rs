@@ -31,7 +31,7 @@ pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
 /// The unit of a variable, and whether it is a difference.
 pub(super) fn variable_unit(flat: &FlatModel, name: &str) -> VariableUnit {
     let is_relative = variable_of(flat, name).is_some_and(|variable| variable.is_relative);
-    VariableUnit { symbol: unit_in(flat, name), is_relative }
+    VariableUnit { symbol: unit_in(flat, name), is_relative, ..VariableUnit::default() }
 }
 
 /// The value of an attribute for an element of an array, whose name ends with its subscript.

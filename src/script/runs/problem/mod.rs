@@ -168,9 +168,7 @@ fn solve_stated(
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let built = built_for(session, &mut file, path, options)?;
-    for note in &built.notes {
-        session.note(crate::mat::errors::DATA_NOTE, note.sentence.clone());
-    }
+    built.notes.iter().for_each(|note| note.say(session));
     let every =
         (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
     if let Some(count) = file.searches.filter(|count| !(1..=searches::MOST).contains(count)) {
@@ -699,7 +697,8 @@ fn parameter_set(solution: &Solution) -> ParameterSet {
             .then_some(Estimate { interval: own.interval, deviation: own.deviation }),
     };
     let name = solution.subject.title.clone();
-    ParameterSet { name, parameters: shared.map(parameter).collect() }
+    let parameters = shared.map(parameter).collect();
+    ParameterSet { name, parameters, ..ParameterSet::default() }
 }
 
 /// A file of an earlier run that this one does not write.

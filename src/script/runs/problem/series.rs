@@ -36,6 +36,7 @@ impl Comparison<'_> {
             name => VariableUnit {
                 symbol: self.model.unit(name).unwrap_or_default(),
                 is_relative: self.model.is_relative(name),
+                definitions: self.model.unit_definitions(),
             },
         }
     }
@@ -66,15 +67,16 @@ impl Comparison<'_> {
         requested: &ColumnEntry,
         notes: &mut Notes,
     ) -> Result<Series, Fault> {
-        let (table, unit) = (self.table, self.unit(y_name));
+        let (table, own_unit) = (self.table, self.unit(y_name));
         let column = data::column(table, requested, y_name, notes)?;
         note_suspicious(requested.column.as_deref().unwrap_or(y_name), &column, (table, notes));
-        let measured = data::in_unit(&column, y_name, &unit, requested, (table, notes))?;
-        let VariableUnit { symbol: unit, is_relative } = unit;
-        note_unit_of_sigma(y_name, requested, (&measured, &unit), notes);
+        let measured = data::in_unit(&column, y_name, &own_unit, requested, (table, notes))?;
+        let unit = &own_unit.symbol;
+        note_unit_of_sigma(y_name, requested, (&measured, unit), notes);
         let count = measured.values.len();
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
-        let factor = data::sigma_factor(table, requested.sigma.as_ref(), &unit, measured.factor);
+        let factor =
+            data::sigma_factor(table, requested.sigma.as_ref(), &own_unit, measured.factor);
         let sigma = sigma::sigma(requested.sigma.as_ref(), y_name, table, factor, count)?;
         let measured_in = |row: &usize| {
             self.x.get(*row).is_some_and(|x| x.is_finite()) && measured.values[*row].is_finite()
@@ -94,14 +96,13 @@ impl Comparison<'_> {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
         }
         let values = rows.iter().map(|row| measured.values[*row]);
-        let own_unit = VariableUnit { symbol: unit.clone(), is_relative };
         note_temperature((y_name, "outputs"), &own_unit, (requested, &column), values, notes);
         note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
         let weight = self.weight(y_name, requested)?;
         Ok(Series {
             experiment: self.experiment.to_owned(),
             y_name: y_name.to_owned(),
-            y_unit: data::shown_unit(&unit, requested, &column.about),
+            y_unit: data::shown_unit(unit, requested, &column.about),
             x_name: self.x_name.to_owned(),
             x_unit: self.unit(self.x_name).symbol,
             file: self.entry.data.display().to_string(),
@@ -204,7 +205,7 @@ impl Comparison<'_> {
 /// this table of the problem.
 pub(super) fn note_temperature(
     (name, place): (&str, &str),
-    VariableUnit { symbol: unit, is_relative }: &VariableUnit,
+    VariableUnit { symbol: unit, is_relative, .. }: &VariableUnit,
     (entry, column): (&ColumnEntry, &Column),
     values: impl Iterator<Item = f64>,
     notes: &mut Notes,

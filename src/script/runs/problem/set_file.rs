@@ -43,9 +43,10 @@ pub(super) fn read(
         origins.add(format!("`{}`", own.display()), &bytes);
         for parameter in set.parameters {
             let unit = declarations.unit(session, &file.model, &parameter)?;
-            let (value, sentence) =
-                parameter_sets::in_unit(&parameter, &unit, &own).map_err(one)?;
-            sentence.into_iter().for_each(|sentence| notes.add(sentence));
+            let (value, said) =
+                parameter_sets::in_unit((&parameter, &set.units), &unit, &own).map_err(one)?;
+            said.note.into_iter().for_each(|sentence| notes.add(sentence));
+            said.warnings.into_iter().for_each(|sentence| notes.warn(sentence));
             entry.set.values.insert(parameter.name, value_entry(value));
         }
     }

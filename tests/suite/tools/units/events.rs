@@ -190,3 +190,90 @@ fn clocks_of_a_model_tick_in_its_unit() {
         assert_eq!(own.get::<i64>("Int64", "k"), rises as i64, "{t}");
     }
 }
+
+/// x where der(x) = -delay(x, 1), and x = 1 before the start, by the method of steps.
+fn late(t: f64) -> f64 {
+    let term = |from: f64, power: i32, factor: f64| factor * (t - from).max(0.0).powi(power);
+    1.0 - t + term(1.0, 2, 0.5) - term(2.0, 3, 1.0 / 6.0)
+}
+
+/// An importer that makes small steps up to the events that are announced.
+fn integrated(unit: &Unpacked, stop: f64, mut at: impl FnMut(f64, &Instance)) {
+    let own = Instance::new(unit, false);
+    own.initialize();
+    let mut next = own.update().next;
+    own.plain("fmi3EnterContinuousTimeMode");
+    let n = unit.description.structure.derivatives.len();
+    let indicators = unit.description.structure.event_indicators.len();
+    let signs = |own: &Instance| -> Vec<bool> {
+        own.fill("fmi3GetEventIndicators", indicators).iter().map(|z| *z > 0.0).collect()
+    };
+    let (mut t, mut x) = (0.0, own.fill("fmi3GetContinuousStates", n));
+    while t < stop {
+        let before = signs(&own);
+        let to = next.unwrap_or(stop).min(t + 0.02).min(stop);
+        runge_kutta(&own, t, to - t, &mut x);
+        t = to;
+        let is_due = own.complete() || next == Some(t) || signs(&own) != before;
+        if is_due {
+            own.plain("fmi3EnterEventMode");
+            let updated = own.update();
+            assert!(!updated.again && updated.next.is_none_or(|next| next > t), "{updated:?}");
+            next = updated.next;
+            own.plain("fmi3EnterContinuousTimeMode");
+        }
+        at(t, &own);
+    }
+}
+
+/// Units read values of the past, whoever integrates them.
+#[test]
+fn values_of_the_past_are_kept() {
+    let unit = export("Late", Version::V3).unwrap();
+    let interface = unit.description.model_exchange.as_ref().unwrap();
+    assert!(interface.needs_completed_step && !interface.provides_directional_derivatives);
+    assert_eq!(unit.description.structure.derivatives[0].dependencies, None);
+    integrated(&unit, 3.0, |t, own| close(own.get("Float64", "x"), late(t), 1e-6));
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    for step in 0..10 {
+        let t = 0.3 * f64::from(step);
+        own.set("Float64", "u", f64::from(step));
+        own.step(t, 0.3);
+        close(own.get("Float64", "x"), late(t + 0.3), 1e-6);
+        close(own.get("Float64", "y"), f64::from(step), 1e-12);
+    }
+    let pipe = export("Pipe", Version::V3).unwrap();
+    let check = |t: f64, own: &Instance| {
+        let s: f64 = own.get("Float64", "s");
+        close(s, 0.5 * t + 0.25 * (1.0 - t.cos()), 1e-6);
+        // The first content is linear from 1 at the entry to e at the exit.
+        let first = 1.0 + (1.0 - s) * (1.0f64.exp() - 1.0);
+        close(own.get("Float64", "w"), if s > 1.0 { (1.0 - s).exp() } else { first }, 1e-5);
+        close(own.get("Float64", "z"), (0.9 * t - 0.5).max(0.0).sin(), 1e-5);
+    };
+    integrated(&pipe, 5.0, check);
+    let own = Instance::new(&pipe, true);
+    own.initialize();
+    for step in 0..20 {
+        own.step(0.25 * f64::from(step), 0.25);
+        check(0.25 * f64::from(step + 1), &own);
+    }
+}
+
+/// A step that is longer than a delay has no result: an importer that does not heed the announced event
+/// gets a refusal rather than wrong values.
+#[test]
+fn steps_past_what_is_known_are_discarded() {
+    let unit = export("Late", Version::V3).unwrap();
+    let own = Instance::new(&unit, false);
+    own.initialize();
+    assert_eq!(own.update().next, Some(0.25));
+    own.plain("fmi3EnterContinuousTimeMode");
+    own.place(0.5, &[1.0]);
+    let mut out = [0.0];
+    let run: Symbol<Array> = function("fmi3GetContinuousStateDerivatives");
+    assert_eq!(unsafe { run(own.pointer, out.as_mut_ptr(), 1) }, 2);
+    let said = |what: &str| MESSAGES.lock().unwrap().iter().any(|message| message.contains(what));
+    assert!(said("is longer than a `delay` of the model"));
+}

@@ -105,9 +105,13 @@ fn a_state_becomes_bytes_and_a_state_again() {
         own.initialize();
         own
     };
-    for (class, outputs) in
-        [("Ball", vec!["h", "v"]), ("Driven", vec!["x", "y"]), ("Loop", vec!["x"])]
-    {
+    for (class, outputs) in [
+        ("Ball", vec!["h", "v"]),
+        ("Driven", vec!["x", "y"]),
+        ("Loop", vec!["x"]),
+        ("Late", vec!["x", "y"]),
+        ("Pipe", vec!["w", "z"]),
+    ] {
         let unit: &'static Unpacked = Box::leak(Box::new(export(class, Version::V3).unwrap()));
         assert!(unit.description.co_simulation.as_ref().unwrap().can_serialize_state);
         let one = begun(unit);

@@ -77,9 +77,19 @@ equation
 end Named;
 model Late
   Real x(start = 1, fixed = true);
+  input Real u;
+  output Real y = delay(u, 0.25);
 equation
   der(x) = -delay(x, 1);
 end Late;
+model Pipe
+  Real s(start = 0, fixed = true) \"How far the content has moved\";
+  output Real w, z;
+equation
+  der(s) = 0.5 + 0.25*sin(time);
+  (, w) = spatialDistribution(exp(-s), 0, s, true, {0, 1}, {1, exp(1)});
+  z = delay(sin(time), 0.5 + 0.1*time, 2);
+end Pipe;
 model Fast
   input Real u;
   output Real y = der(u);
@@ -349,6 +359,16 @@ impl<'u> Instance<'u> {
         let states: Symbol<Set> = function("fmi3SetContinuousStates");
         assert_eq!(unsafe { time(self.pointer, t) }, 0);
         assert_eq!(unsafe { states(self.pointer, x.as_ptr(), x.len()) }, 0);
+    }
+
+    /// Announces the end of a step; whether an event is to follow.
+    fn complete(&self) -> bool {
+        type Complete = unsafe extern "C" fn(*mut c_void, bool, *mut bool, *mut bool) -> c_int;
+        let complete: Symbol<Complete> = function("fmi3CompletedIntegratorStep");
+        let (mut event, mut terminates) = (false, false);
+        let status = unsafe { complete(self.pointer, true, &raw mut event, &raw mut terminates) };
+        assert_eq!((status, terminates), (0, false), "{:?}", MESSAGES.lock().unwrap());
+        event
     }
 
     fn update(&self) -> Updated {
