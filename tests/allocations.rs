@@ -249,6 +249,7 @@ fn curve(evaluations: u64) -> Problem {
             weight: 1.0,
             sigma: Sigma::Unknown,
             column: "V".to_owned(),
+            x_column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
         }],

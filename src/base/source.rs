@@ -97,6 +97,11 @@ impl Span {
         }
     }
 
+    /// Whether another span lies within this one.
+    pub fn contains(self, other: Span) -> bool {
+        self.source == other.source && self.start <= other.start && other.end <= self.end
+    }
+
     /// Whether the span names a place in a text.
     #[inline]
     pub fn is_known(self) -> bool {
@@ -199,6 +204,11 @@ impl Source {
         let start = self.line_starts[line - 1] as usize;
         let column = self.text.get(start..offset).map_or(0, |text| text.chars().count()) + 1;
         LineColumn { line, column }
+    }
+
+    /// The first and the last line of a span, counted from 0.
+    pub(crate) fn lines_of(&self, span: Span) -> [usize; 2] {
+        [span.start, span.end].map(|offset| self.line_column(offset as usize).line - 1)
     }
 
     /// Number of lines.

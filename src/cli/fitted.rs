@@ -19,10 +19,16 @@ static WHOLE: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(\d) (to|×|±) ([-+\d])| (=) ").expect("it is an expression"));
 /// What begins a quoted line of a file, which keeps its columns.
 const QUOTED: [char; 2] = ['│', '┌'];
+/// What points to a place in a quoted line, before the words about it.
+const MARKS: &str = " ^-│╭╰─";
+/// Columns that words beside such marks have at least; else they begin in the next line.
+const BESIDE: usize = 30;
 /// Follows the sign that begins an action.
 const HELP: &str = " help: ";
 /// Begins a colour. Diagnostics have colours, and no tables.
 const COLOUR: char = '\u{1b}';
+/// Ends a colour.
+const PLAIN: &str = "\u{1b}[0m";
 
 /// The text with lines of at most `width` columns, as far as its words allow.
 pub(super) fn fitted(text: &str, width: usize) -> String {
@@ -46,8 +52,11 @@ fn sentence(line: &str, width: usize) -> String {
         Some(content) => (content, "\n"),
         None => (line, ""),
     };
-    if display_width(content) <= width || content.contains(QUOTED) {
+    if display_width(content) <= width {
         return line.to_owned();
+    }
+    if content.contains(QUOTED) {
+        return labelled(content, width).unwrap_or_else(|| content.to_owned()) + end;
     }
     let own = content.len() - content.trim_start().len();
     // The sign before it may be coloured.
@@ -56,6 +65,46 @@ fn sentence(line: &str, width: usize) -> String {
     let label = content.find(HELP).filter(is_label);
     let label = label.map(|at| display_width(&content[..at]) + HELP.len());
     wrapped(content.trim_start(), own, label.unwrap_or(own), width) + end
+}
+
+/// A line below a quoted one, whose words wrap below themselves; `None` where there are none.
+fn labelled(line: &str, width: usize) -> Option<String> {
+    let visible = visible(line);
+    let mut signs = visible.iter().skip_while(|(_, sign)| *sign == ' ');
+    let (bar, _) = signs.next().filter(|(_, sign)| *sign == QUOTED[0])?;
+    let (start, _) = signs.find(|(_, sign)| !MARKS.contains(*sign))?;
+    let gutter = &line[..bar + QUOTED[0].len_utf8()];
+    let (before, words) = line.split_at(*start);
+    let colour = before.rfind(COLOUR).map_or("", |at| &before[at..]);
+    let (is_coloured, colour) = (!colour.is_empty(), colour.trim_end_matches(' '));
+    let (column, least) = (display_width(before), display_width(gutter) + 1);
+    let length = display_width(words);
+    let is_beside = width.saturating_sub(column) >= BESIDE.min(length);
+    let first = if is_beside { column } else { width.saturating_sub(length).max(least) };
+    let wrapped = wrapped(words, 0, 0, width.saturating_sub(first));
+    let plain = if is_coloured { PLAIN } else { "" };
+    let lines = wrapped.lines().enumerate().map(|(number, words)| match number {
+        0 if is_beside => format!("{before}{words}{plain}"),
+        _ => {
+            let indent = " ".repeat(first - display_width(gutter));
+            format!("{gutter}{plain}{indent}{colour}{words}{plain}")
+        }
+    });
+    let marks = before.strip_suffix(colour).unwrap_or(before).trim_end();
+    let marks = (!is_beside).then(|| format!("{marks}{plain}"));
+    Some(marks.into_iter().chain(lines).collect::<Vec<_>>().join("\n"))
+}
+
+/// The characters that are no part of a colour, with their places.
+fn visible(line: &str) -> Vec<(usize, char)> {
+    let mut is_colour = false;
+    let shown = line.char_indices().filter(|(_, sign)| {
+        is_colour |= *sign == COLOUR;
+        let is_shown = !is_colour;
+        is_colour &= *sign != 'm';
+        is_shown
+    });
+    shown.collect()
 }
 
 /// Words from column `first` on, in further lines from column `next` on.
@@ -182,6 +231,21 @@ mod tests {
                           k          1.234e-5\n      1e-6 to 1e-4    0 to 1\n      practically \
                           non-identifiable\n";
         assert_eq!(fitted(text, 34), expected);
+    }
+
+    #[test]
+    fn words_about_a_place_wrap_below_themselves() {
+        let text = " 1 │ x = a + b\n   │     ^ there is no variable `a` in the script\n";
+        let expected =
+            " 1 │ x = a + b\n   │     ^ there is no variable `a` in the\n   │       script\n";
+        assert_eq!(fitted(text, 48), expected);
+        let [bar, red, plain] = ["   \u{1b}[34m│\u{1b}[0m ", "\u{1b}[31m", "\u{1b}[0m"];
+        let coloured = format!("{bar}    {red}^{plain} {red}there is no variable{plain}\n");
+        let expected = format!(
+            "{bar}    {red}^{plain}\n{bar}{red}there is no{plain}\n{bar}{red}variable{plain}\n"
+        );
+        let fitted = fitted(&coloured, 20).replace(&plain.repeat(2), plain);
+        assert_eq!(fitted, expected);
     }
 
     #[test]

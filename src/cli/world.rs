@@ -401,6 +401,10 @@ impl Screen for SystemWorld {
         self.screen.eprint(text);
     }
 
+    fn columns(&self) -> Option<usize> {
+        self.screen.columns()
+    }
+
     fn is_one_screen(&self) -> bool {
         self.screen.is_one_screen()
     }

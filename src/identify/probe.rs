@@ -450,6 +450,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         weight,
         sigma: Sigma::Unknown,
         column: study.y.name.clone(),
+        x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
     })

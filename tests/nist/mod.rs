@@ -181,6 +181,7 @@ impl Dataset {
             weight: 1.0,
             sigma: Sigma::Unknown,
             column: "y".into(),
+            x_column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
         }

@@ -15,6 +15,12 @@ const KEPT: [usize; 2] = [40, 120];
 /// Columns before a quoted line: its number and the bar.
 const GUTTER: usize = 8;
 
+/// Columns of the bar beside the lines of a place that has several.
+const SIDE: usize = 2;
+
+/// Lines that are quoted of a longer place, at its beginning and at its end.
+const QUOTED: usize = 4;
+
 /// Columns of a tab.
 const TAB: usize = 4;
 
@@ -50,16 +56,32 @@ impl<'s> Excerpts<'s> {
         width: usize,
     ) -> Excerpts<'s> {
         let mut lines: BTreeMap<usize, BTreeMap<usize, CutLine>> = BTreeMap::new();
-        for label in &diagnostic.labels {
-            if let Some(source) = sources.get(label.span.source)
-                && let Some(found) = CutLine::of(source, label.span, width)
-            {
-                let own = lines.entry(label.span.source.0 as usize).or_default();
-                own.entry(found.line).or_insert(found);
+        let known = |span: Span| Some((sources.get(span.source)?, span));
+        let places = || diagnostic.labels.iter().filter_map(|label| known(label.span));
+        let sides = places().filter(|(source, span)| {
+            let [first, last] = source.lines_of(*span);
+            first < last
+        });
+        let width = width.saturating_sub(SIDE * sides.count());
+        for (source, span) in places() {
+            let [first, last] = source.lines_of(span);
+            let begin = first..=(first + QUOTED).min(last);
+            let quoted = begin.chain(last.saturating_sub(QUOTED).max(first)..=last);
+            let own = lines.entry(span.source.0 as usize).or_default();
+            for line in quoted {
+                // Of a line in the middle the beginning is shown.
+                let at = match line {
+                    line if line == first => span.start as usize,
+                    line if line == last => span.end as usize,
+                    line => source.line_range(line).map_or(0, |range| range.start),
+                };
+                if let Some(found) = CutLine::of(source, (line, at), width) {
+                    own.entry(line).or_insert(found);
+                }
             }
         }
         let cut = |(id, lines): (usize, BTreeMap<usize, CutLine>)| {
-            let source = sources.get(SourceId(id as u32))?;
+            let source = sources.get(SourceId(id as u32)).filter(|_| !lines.is_empty())?;
             Some((id, Cut::of(source, lines.into_values().collect())))
         };
         Excerpts { sources, cut: lines.into_iter().filter_map(cut).collect() }
@@ -81,28 +103,21 @@ impl<'s> Excerpts<'s> {
 }
 
 impl CutLine {
-    /// `None` where the line of the place is short enough.
-    fn of(source: &Source, span: Span, width: usize) -> Option<CutLine> {
-        let start = span.start as usize;
-        let line = source.line_column(start).line - 1;
+    /// `None` where the line is short enough; else what is around a byte of it.
+    fn of(source: &Source, (line, start): (usize, usize), width: usize) -> Option<CutLine> {
         let whole = source.line_range(line)?;
         let text = source.text[whole.clone()].trim_end_matches(['\r', '\n']);
         let whole = whole.start..whole.start + text.len();
         let most = MAX_LINE.min(width.saturating_sub(GUTTER));
-        if text.chars().map(|c| if c == '\t' { TAB } else { 1 }).sum::<usize>() <= most {
+        if text.chars().map(columns).sum::<usize>() <= most {
             return None;
         }
         let room = most.saturating_sub(2);
-        let [before, after] =
-            if room < KEPT[0] + KEPT[1] { [room / 3, room - room / 3] } else { KEPT };
-        let boundary = |mut at: usize| {
-            while !source.text.is_char_boundary(at) {
-                at -= 1;
-            }
-            at
-        };
-        let kept = boundary(start.saturating_sub(before).max(whole.start))
-            ..boundary((start + after).min(whole.end));
+        let is_narrow = room < KEPT[0] + KEPT[1];
+        let [before, all] = if is_narrow { [room / 3, room] } else { [KEPT[0], KEPT[0] + KEPT[1]] };
+        let start = start.clamp(whole.start, whole.end);
+        let from = start - fitting(source.text[whole.start..start].chars().rev(), before);
+        let kept = from..from + fitting(source.text[from..whole.end].chars(), all);
         Some(CutLine { line, kept, whole })
     }
 
@@ -120,6 +135,20 @@ impl CutLine {
     fn length(&self) -> usize {
         self.kept.len() + self.marks().map(str::len).iter().sum::<usize>()
     }
+}
+
+/// Columns of a character.
+fn columns(c: char) -> usize {
+    if c == '\t' { TAB } else { 1 }
+}
+
+/// Bytes of the characters at the beginning that fit into so many columns.
+fn fitting(characters: impl Iterator<Item = char>, room: usize) -> usize {
+    let ends = characters.scan([0, 0], |[used, bytes], c| {
+        (*used, *bytes) = (*used + columns(c), *bytes + c.len_utf8());
+        (*used <= room).then_some(*bytes)
+    });
+    ends.last().unwrap_or(0)
 }
 
 impl Cut {

@@ -3,8 +3,15 @@
 /// Longer names are not compared, in bytes.
 const LONGEST: usize = 300;
 
+/// Edits that are surely typing errors: with more, a candidate that the name ends with is nearer.
+const SLIPS: usize = 2;
+
+/// Letters of such a candidate at least.
+const PART: usize = 6;
+
 /// The candidate nearest to `misspelt`, if it is close enough for a typing error: at most
-/// one edit in three letters, case not counted. For a single letter only the case may differ.
+/// one edit in three letters, case not counted. For a single letter only the case may differ. A name that
+/// ends with a candidate, as `outputColumns` with `columns`, may mean that.
 pub fn nearest<'a>(
     misspelt: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -14,12 +21,20 @@ pub fn nearest<'a>(
     let limit = (length / 3).max(1);
     // Names have no such length, and a comparison takes the product of the lengths.
     let is_short = |name: &str| name.len() <= LONGEST;
+    let rank = |candidate: &str| {
+        let own = candidate.to_lowercase();
+        let edits = distance(&lower, &own);
+        let is_part = own.len() >= PART && lower.ends_with(&own);
+        match edits <= limit && (edits == 0 || limit < length) {
+            true if edits <= SLIPS || !is_part => Some((edits, 0)),
+            _ => is_part.then(|| (SLIPS, lower.len() - own.len())),
+        }
+    };
     candidates
         .into_iter()
         .filter(|candidate| *candidate != misspelt && is_short(candidate) && is_short(misspelt))
-        .map(|candidate| (distance(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(edits, _)| *edits <= limit && (*edits == 0 || limit < length))
-        .min_by_key(|(edits, _)| *edits)
+        .filter_map(|candidate| Some((rank(candidate)?, candidate)))
+        .min_by_key(|(rank, _)| *rank)
         .map(|(_, candidate)| candidate)
 }
 
@@ -75,6 +90,9 @@ mod tests {
         assert_eq!(nearest("Mutaton", names), Some("Mutation"));
         assert_eq!(nearest("fit_ordre", names), Some("Fit_Order"));
         assert_eq!(nearest("simulate", names), None);
+        let columns = ["outputs", "inputColumns", "columns"];
+        assert_eq!(nearest("outputColumns", columns), Some("columns"));
+        assert_eq!(nearest("inputcolumn", columns), Some("inputColumns"));
     }
 
     #[test]

@@ -144,8 +144,8 @@ pub fn decided(series: &[Series]) -> Option<Finding> {
 ///
 /// # Errors
 ///
-/// A variable with too few points for a deviation of its own.
-pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, Fault> {
+/// A variable with too few points for a deviation of its own, by its name.
+pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (String, Fault)> {
     let mut names: Vec<&str> = Vec::new();
     let (mut groups, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
     for own in series {
@@ -162,11 +162,12 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, Fau
         groups.extend(own.y.iter().map(|_| group));
     }
     if let Some((name, values)) = names.iter().zip(&sizes).find(|(_, values)| values.len() < FEW) {
-        return Err(fault!(
+        let fault = fault!(
             BAD_OPTION,
             "the sigma of `{name}` cannot be estimated from {} point{}", values.len(), if values.len() == 1 { "" } else { "s" };
             help: "give it as a number"
-        ));
+        );
+        return Err(((*name).to_owned(), fault));
     }
     let floor = |values: &Vec<f64>| {
         let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;

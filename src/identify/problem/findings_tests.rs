@@ -66,6 +66,7 @@ fn problem(
         weight: 1.0,
         sigma: sigma.clone(),
         column: String::new(),
+        x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
     });

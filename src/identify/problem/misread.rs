@@ -106,13 +106,19 @@ impl Solution {
         smallest(&self.series)
     }
 
+    /// Whether one of these readings explains the data far better.
+    pub fn is_explained_by(&self, readings: &[Reading]) -> bool {
+        let best = best_of(readings);
+        // A fit that is worse than a constant explains nothing, however bad the other one is.
+        let is_better = |own: f64| best > 0.0 && 1.0 - best < FAR_BETTER * (1.0 - own);
+        self.smallest_r_squared().is_some_and(is_better)
+    }
+
     /// Says how well the model fits columns that are read otherwise.
     pub fn add_readings(&mut self, readings: &[Reading]) {
         let known = readings.iter().filter_map(|reading| Some((reading, reading.r_squared?)));
         let Some(own) = self.smallest_r_squared() else { return };
-        let best = known.clone().map(|(_, found)| found).fold(f64::NEG_INFINITY, f64::max);
-        // A fit that is worse than a constant explains nothing, however bad the other one is.
-        let is_better = best > 0.0 && 1.0 - best < FAR_BETTER * (1.0 - own);
+        let (best, is_better) = (best_of(readings), self.is_explained_by(readings));
         if is_better && self.may_be_misread() {
             self.findings.iter_mut().for_each(range_notes::leave_out_remedy);
         } else if is_better {
@@ -138,6 +144,10 @@ impl Solution {
     }
 }
 
+fn best_of(readings: &[Reading]) -> f64 {
+    readings.iter().filter_map(|own| own.r_squared).fold(f64::NEG_INFINITY, f64::max)
+}
+
 fn is_pattern(finding: &Finding) -> bool {
     let is_kind = matches!(finding.kind, FindingKind::Autocorrelation | FindingKind::PoorFit);
     // Two outputs with errors in common have no pattern each.
@@ -145,7 +155,11 @@ fn is_pattern(finding: &Finding) -> bool {
 }
 
 fn abscissas(series: &[SolvedSeries]) -> String {
-    let mut names: Vec<String> = series.iter().map(|own| format!("`{}`", own.x[0])).collect();
+    let column = |own: &SolvedSeries| match own.x_column.is_empty() {
+        true => format!("`{}`", own.x[0]),
+        false => format!("the column `{}`", own.x_column),
+    };
+    let mut names: Vec<String> = series.iter().map(column).collect();
     names.sort();
     names.dedup();
     names.join(", ")

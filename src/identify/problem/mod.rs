@@ -178,6 +178,8 @@ pub struct Series {
     pub sigma: Sigma,
     /// The column of the data that Y was read from.
     pub column: String,
+    /// The column that X was read from; empty where there is none.
+    pub x_column: String,
     /// Rows of the points in the data, the first below the heading is 1; empty where points have
     /// no rows, and then they are counted.
     pub rows: Vec<usize>,

@@ -313,6 +313,9 @@ pub struct SolvedSeries {
     pub y: [String; 2],
     /// What it is given over, and the unit.
     pub x: [String; 2],
+    /// The column of the data that X was read from; empty in a result that was read.
+    #[serde(skip)]
+    pub(crate) x_column: String,
     /// Where the data come from.
     pub file: String,
     /// Root of the mean squared residual.
@@ -356,6 +359,7 @@ impl SolvedSeries {
         SolvedSeries {
             experiment: series.experiment.clone(),
             y: [series.y_name.clone(), shown_unit(&series.y_unit)],
+            x_column: series.x_column.clone(),
             x: [series.x_name.clone(), shown_unit(&series.x_unit)],
             file: series.file.clone(),
             rmse: (square / n).sqrt(),

@@ -41,6 +41,7 @@ pub(super) fn problem(
         weight: 1.0,
         sigma: Sigma::Unknown,
         column: String::new(),
+        x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
     };

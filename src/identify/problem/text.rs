@@ -420,7 +420,8 @@ impl SolvedParameter {
             Some(own) if own <= self.value.abs() => {
                 format!("{} %", significant(100.0 * own / self.value.abs(), 2))
             }
-            Some(own) => significant(own, 3),
+            // The value may be zero, or the error may be a multiple of it.
+            Some(own) => format!("{} {}", significant(own, 3), self.unit).trim_end().to_owned(),
             None if self.determined == Some(false) => "unbounded".to_owned(),
             None => "-".to_owned(),
         }

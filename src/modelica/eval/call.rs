@@ -57,7 +57,27 @@ impl Evaluator<'_> {
             let value = value.clone();
             return self.call_value(&value, arguments, span);
         }
-        match self.target(function)? {
+        let target = self.target(function)?;
+        self.call_target(target, function, arguments, span).map_err(|error| {
+            let is_own =
+                error.trace.iter().all(|frame| frame.span == span) && span.contains(error.span());
+            let is_about_arguments = [WRONG_ARGUMENTS, TYPE_MISMATCH].contains(&error.code);
+            let commas = foreign::decimal_commas(&arguments.positional);
+            match commas.filter(|_| is_own && is_about_arguments) {
+                Some(help) => error.help(help),
+                None => error,
+            }
+        })
+    }
+
+    fn call_target(
+        &mut self,
+        target: Target,
+        function: &ComponentReference,
+        arguments: &ast::Arguments,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        match target {
             Target::Function(function) => {
                 let given = self.bound(&function, arguments, &[], span)?;
                 self.call_bound(&function, given, span)

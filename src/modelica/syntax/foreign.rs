@@ -1,5 +1,6 @@
 //! What other languages write otherwise: punctuation at the place where the grammar stops, and names.
 
+use super::ast::{Expression, ExpressionKind, UnaryOperator};
 use super::keywords::is_keyword;
 
 /// What is wrong, and what Modelica writes.
@@ -141,6 +142,36 @@ impl Surroundings<'_> {
             help: "write `equation` on a line above the first equation".to_owned(),
         })
     }
+}
+
+/// The help for arguments of a call that may be numbers with decimal commas, `f(1,5)`: a whole number and
+/// digits with nothing but a comma between them.
+pub(crate) fn decimal_commas<'a>(
+    arguments: impl IntoIterator<Item = &'a Expression>,
+) -> Option<String> {
+    let arguments: Vec<&Expression> = arguments.into_iter().collect();
+    let number = |pair: &[&Expression]| {
+        let ExpressionKind::Integer(decimals) = &pair[1].kind else { return None };
+        let whole = match &pair[0].kind {
+            ExpressionKind::Integer(whole) => whole.to_string(),
+            ExpressionKind::Unary { operator: UnaryOperator::Minus, operand } => match operand.kind
+            {
+                ExpressionKind::Integer(whole) => format!("-{whole}"),
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let [before, after] = [pair[0].span, pair[1].span];
+        let digits = (after.end - after.start) as usize;
+        (before.end + 1 == after.start).then(|| format!("`{whole}.{decimals:0digits$}`"))
+    };
+    let numbers: Vec<String> = arguments.windows(2).filter_map(number).collect();
+    (!numbers.is_empty()).then(|| {
+        format!(
+            "a comma separates arguments; if you mean a number, write it with a point: {}",
+            numbers.join(" or ")
+        )
+    })
 }
 
 /// The number that a text ends with; not the end of a name such as `x1`.

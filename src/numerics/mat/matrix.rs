@@ -264,7 +264,15 @@ impl MatFile {
         Err(fault!(UNKNOWN_MATRIX, "{} has no {what} `{name}`", self.file())
             .help_if(suggest::did_you_mean(name, names))
             .help_if(self.why_skipped(name))
-            .help(self.inventory()))
+            .help(self.inventory())
+            .help_if(self.unread_columns()))
+    }
+
+    /// The columns that could not be read: one of them may be the one that is missing.
+    pub fn unread_columns(&self) -> Option<String> {
+        let reasons: Vec<&str> = self.failed.values().map(|fault| fault.message.as_str()).collect();
+        let is_some = self.is_table() && !reasons.is_empty();
+        is_some.then(|| format!("a column cannot be read: {}", reasons.join("; ")))
     }
 
     /// Why the variable to which a name belongs was not read.

@@ -345,6 +345,40 @@ mod tests {
         }
     }
 
+    /// A letter is missing in the name of a command or of an input.
+    #[test]
+    fn slips_in_names_of_commands_and_inputs_are_answered() {
+        let mut session = Session::new(Box::new(crate::world::MemoryWorld::new()));
+        let mut said = |dialect, call: &str| {
+            session.options.dialect = Some(dialect);
+            session.output.transcript = Some(crate::Transcript::default());
+            session.run_text("s.mos", &format!("{call};\n"));
+            session.output.transcript.take().unwrap_or_default().to_string()
+        };
+        let slip = |name: &str| format!("{}{}", &name[..1], &name[2..]);
+        let mut silent = Vec::new();
+        let of_dialect = |dialect| {
+            names().into_iter().filter(|name| name.len() > 3).filter_map(move |name| {
+                Some((dialect, name, find(&Name::parse(name), dialect)?.function()))
+            })
+        };
+        let all = of_dialect(Dialect::Dymola).chain(of_dialect(Dialect::OpenModelica));
+        for (dialect, name, function) in all {
+            let known = |own: &str| {
+                inputs(own).is_empty() && !crate::functions::names().any(|known| known == own)
+            };
+            let mut calls = Vec::new();
+            calls.extend(Some(format!("{}()", slip(name))).filter(|_| known(&slip(name))));
+            let given: Vec<&str> = function.inputs.iter().map(|own| own.name.as_str()).collect();
+            let is_new = |own: &String| !given.contains(&own.as_str());
+            let slips = given.iter().filter(|own| own.len() > 3).map(|own| slip(own));
+            calls.extend(slips.filter(is_new).map(|own| format!("{name}({own} = 1)")));
+            let is_silent = |call: &String| !said(dialect, call).contains("did you mean");
+            silent.extend(calls.into_iter().filter(is_silent));
+        }
+        assert!(silent.is_empty(), "{silent:?}");
+    }
+
     #[test]
     fn a_bare_name_follows_the_dialect_and_a_full_one_its_package() {
         let header = |name: &str, dialect| {

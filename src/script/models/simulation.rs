@@ -389,7 +389,7 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
             help: "use a longer `outputInterval` or a smaller `numberOfIntervals`");
     }
     let tolerance = options.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
-    if !(1e-14..=0.1).contains(&tolerance) {
+    if !is_tolerance(tolerance) {
         bail!(crate::registry::BAD_OPTION, "`tolerance` is {tolerance}, outside 1e-14 to 0.1");
     }
     let method = match &options.method {
@@ -407,6 +407,11 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
         treats_chattering: !options.stops_at_chattering,
         ..Settings::default()
     })
+}
+
+/// Whether solvers can keep this tolerance.
+pub(crate) fn is_tolerance(tolerance: f64) -> bool {
+    (1e-14..=0.1).contains(&tolerance)
 }
 
 /// An interactive simulation may take so many steps as long as it gets on.

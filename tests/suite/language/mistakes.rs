@@ -236,7 +236,7 @@ fn noted(table: &str, entries: &str, arguments: &[&str]) -> String {
 fn data_that_do_not_fit_the_model_are_noted() {
     let right = "time,T\n0,20\n200,17\n400,16\n600,15.1\n";
     let output = noted(right, "outputs = { T = \"T\" }", &[]);
-    for word in ["minutes", "in K", "swapped", "checkpoint in", "yet"] {
+    for word in ["times are in minutes", "in K", "swapped", "checkpoint in", "yet"] {
         assert!(!output.contains(word), "`{word}` is in: {output}");
     }
     let minutes = "time,T\n0,20\n3,17\n6,16\n10,15.1\n";
@@ -293,7 +293,7 @@ fn models_with_inputs_have_the_same_notes() {
     let output = heated(&minutes, one, "");
     assert!(output.contains("if the times are in minutes"), "{output}");
     let output = heated(&seconds, one, "");
-    for word in ["minutes", "no effect", "computes"] {
+    for word in ["times are in minutes", "no effect", "computes"] {
         assert!(!output.contains(word), "`{word}` is in: {output}");
     }
     let output = heated(&seconds, one, "stop_time = 300");
@@ -437,5 +437,72 @@ fn a_state_without_start_value_is_named() {
     ] {
         let errors = simulated(said);
         assert!(!errors.contains("without start value"), "{said}: {errors}");
+    }
+}
+
+/// What other countries and other systems write in a script.
+#[test]
+fn decimal_commas_and_backslashes_in_scripts_are_named() {
+    let problem = |data: &str| {
+        format!(
+            "identify(GAPILib.Problem(modelName = \"Cap\", files = {{\"Cap.mo\"}}, parameters = \
+             {{GAPILib.Free(\"tau\", 1, 9)}}, experiments = {{GAPILib.Experiment(data = \"{data}\", \
+             xColumn = \"t\", outputs = {{\"v\"}}, columns = {{\"u\"}})}}));\n"
+        )
+    };
+    for (text, words) in [
+        ("p = GAPILib.Free(\"R0\",1e-3,1,5);\n".to_owned(), ["point: `1.5`", "`scale`"]),
+        ("p = GAPILib.Free(\"R0\", 0,001, 1);\n".to_owned(), ["point: `0.001`", "`scale`"]),
+        ("y = sqrt(1,5);\n".to_owned(), ["point: `1.5`", "sqrt"]),
+        ("y = sqrt(-1,05);\n".to_owned(), ["point: `-1.05`", "sqrt"]),
+        ("simulateModel(\"Cap\", stopTime = 1,5);\n".to_owned(), ["point: `1.5`", "positional"]),
+        (problem("C:\\data\\b.csv"), ["`\\b` in a string is a backspace", "write `/` or `\\\\`"]),
+        (
+            READ.replace("d.csv", "C:\\data\\new.csv"),
+            ["`\\n` in a string is a line break", "write `/` or `\\\\`"],
+        ),
+    ] {
+        let (code, output) = script(&text);
+        assert!(code != 0, "{text}: {output}");
+        for word in words {
+            assert!(output.contains(word), "{text}: `{word}` is not in: {output}");
+        }
+    }
+    // Two arguments that are right.
+    let (_, output) = script("y = min(1,5);\nz = max(1, 5);\nw = atan2(1,5, 2);\n");
+    assert_eq!(output.matches("point:").count(), 1, "{output}");
+}
+
+/// One column that cannot be read: what is missing because of it is said with the cell.
+#[test]
+fn columns_that_cannot_be_read_are_named_where_something_is_missing() {
+    let model =
+        "model Cap\n  parameter Real tau = 1;\n  output Real v = exp(-time/tau);\nend Cap;\n";
+    let problem = "model = \"Cap\"\nfiles = [\"Cap.mo\"]\n[parameters]\ntau = { min = 1, max = 9 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\n";
+    let dates = "Datum;v\n03/04/2024 10:00;1\n03/05/2024 10:00;0.5\n03/06/2024 10:00;0.2\n";
+    let both = "line 2, column 1: `03/04/2024 10:00` in `Datum` is ambiguous: 2024-04-03 with the \
+                day first, 2024-03-04 with the month first";
+    let cell = "line 3, column 2: `Err` in `v` is not a number";
+    for (data, entries, words) in [
+        ("t;v\n0;1\n1;Err\n2;0.5\n", "", ["`outputs` is missing", cell]),
+        (dates, "outputs = { v = \"v\" }\n", ["no column `time`", both]),
+        (
+            dates,
+            "x = { variable = \"time\", column = \"Datum\" }\noutputs = { v = \"v\" }\n",
+            [both, "2024-03-05"],
+        ),
+    ] {
+        let problem = format!("{problem}{entries}");
+        let here = folder(&[("Cap.mo", model), ("d.csv", data), ("p.toml", &problem)]);
+        let (code, out, errors) = gapi(&here, &["identify", "p.toml"]);
+        let output = (errors + &out).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(code != 0, "{output}");
+        for word in words {
+            assert!(output.contains(word), "`{word}` is not in: {output}");
+        }
+        let (_, out, errors) = gapi(&here, &["new", "d.csv", "--model", "Cap.mo", "-o", "n.toml"]);
+        let output = (errors + &out).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.iter().any(|word| output.contains(word)), "{words:?}: {output}");
     }
 }

@@ -241,6 +241,49 @@ fn what_the_program_says_fits_into_eighty_columns() {
     }
 }
 
+/// Scripts that end the session, or need a world that can.
+const ENDING: [&str; 2] = ["interrupted.mos", "scripts-too-deep.mos"];
+
+/// Every diagnostic that a script can raise, whatever it quotes: one long word excepted, which no line break
+/// would make shorter.
+#[test]
+fn diagnostics_fit_into_eighty_columns() {
+    let here = tempfile::tempdir().expect("a folder");
+    let scripts = project("tests/diagnostics");
+    for folder in ["", "files"] {
+        for entry in std::fs::read_dir(scripts.join(folder)).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let target = here.path().join(path.strip_prefix(&scripts).expect("below"));
+            match path.is_dir() {
+                true => std::fs::create_dir_all(target).expect("made"),
+                false => drop(std::fs::copy(&path, target)),
+            }
+        }
+    }
+    let mut names: Vec<String> = std::fs::read_dir(here.path())
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".mos") && !ENDING.contains(&name.as_str()))
+        .collect();
+    names.sort();
+    assert!(names.len() > 100, "{names:?}");
+    // One after the other in one session, each with its errors.
+    let calls: String = names.iter().map(|name| format!("RunScript(\"{name}\");\n")).collect();
+    std::fs::write(here.path().join("all.mos"), calls).expect("written");
+    let shown = lines(&shown(&here, &["run", "all.mos", "--plain"]));
+    let codes: std::collections::BTreeSet<&str> = shown
+        .iter()
+        .filter_map(|line| line.split_once('[')?.1.split_once("]:"))
+        .map(|(code, _)| code)
+        .collect();
+    assert!(codes.len() > 110, "{codes:?}");
+    let is_long = |line: &&String| {
+        line.chars().count() > 80 && line.split_whitespace().any(|word| word.len() < 70)
+    };
+    let long: Vec<&String> = shown.iter().filter(is_long).collect();
+    assert_eq!(long, Vec::<&String>::new());
+}
+
 /// On a terminal the words are those of a file, in other lines.
 #[test]
 fn a_report_has_all_its_words_on_a_terminal() {
@@ -252,7 +295,9 @@ fn a_report_has_all_its_words_on_a_terminal() {
         words.sort_unstable();
         words
     };
-    let on_terminal = lines(&shown(&here, arguments));
+    let mut on_terminal = lines(&shown(&here, arguments));
+    // A note is on standard error, which is the same screen, and not once more in the report.
+    on_terminal.iter_mut().for_each(|line| *line = line.replace("note[data-note]:", ""));
     assert!(
         on_terminal.iter().any(
             |line| line == "  parameter  value   unit  standard error  95 % interval     range"

@@ -43,6 +43,7 @@ fn analysed(
             weight: 2.0,
             sigma: crate::problem::Sigma::Unknown,
             column: String::new(),
+            x_column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
         }],

@@ -74,31 +74,30 @@ impl Prior {
     }
 }
 
+/// What an adjustment cannot be made for, by its number among the parameters or series of the problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cause {
+    /// The prior of a parameter.
+    Prior(usize),
+    /// The log-normal errors of a series.
+    Series(usize),
+}
+
 /// Adds priors, constraints and logarithms to a problem.
 ///
 /// # Errors
 ///
 /// Priors without known standard deviations or of impossible numbers, measured values that have
 /// no logarithm.
-pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), Fault> {
+pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), (Cause, Fault)> {
     let points = problem.n_points();
     let logarithmic = logarithms(problem, &added.logarithmic)?;
     let weighed: Vec<Prior> =
         added.priors.iter().copied().filter(|prior| prior.point().is_some()).collect();
-    if !weighed.is_empty() && ErrorModel::of(problem) != ErrorModel::Known {
-        bail!(
-            BAD_OPTION,
-            "a prior must be weighted against the data, but the standard deviations of the data \
-             are unknown";
-            help: "give `sigma` for every output"
-        );
-    }
-    if !weighed.is_empty() && problem.objectives[0].0 != "sum_of_squares" {
-        bail!(BAD_OPTION, "`{}` cannot be weighted against a \
-                           prior", problem.objectives[0].0; help: "minimize `sum_of_squares`");
-    }
     for prior in &weighed {
-        problem.series.push(pseudo_series(problem, prior)?);
+        let series = weighable(problem).and_then(|()| pseudo_series(problem, prior));
+        let series = series.map_err(|fault| (Cause::Prior(prior.parameter), fault))?;
+        problem.series.push(series);
     }
     problem.inference.priors = added.priors;
     problem.inference.logarithmic = added.logarithmic;
@@ -117,8 +116,28 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Refuses priors where the measured points have no known weight.
+fn weighable(problem: &Problem) -> Result<(), Fault> {
+    if ErrorModel::of(problem) != ErrorModel::Known {
+        bail!(
+            BAD_OPTION,
+            "a prior must be weighted against the data, but the standard deviations of the data \
+             are unknown";
+            help: "give `sigma` for every output"
+        );
+    }
+    if problem.objectives[0].0 != "sum_of_squares" {
+        bail!(BAD_OPTION, "`{}` cannot be weighted against a \
+                           prior", problem.objectives[0].0; help: "minimize `sum_of_squares`");
+    }
+    Ok(())
+}
+
 /// The measured values of these series become logarithms; their points in the row of all.
-fn logarithms(problem: &mut Problem, series: &[usize]) -> Result<Vec<Range<usize>>, Fault> {
+fn logarithms(
+    problem: &mut Problem,
+    series: &[usize],
+) -> Result<Vec<Range<usize>>, (Cause, Fault)> {
     let mut ranges = Vec::new();
     let mut first = 0;
     for (k, own) in problem.series.iter_mut().enumerate() {
@@ -128,14 +147,16 @@ fn logarithms(problem: &mut Problem, series: &[usize]) -> Result<Vec<Range<usize
             continue;
         }
         if let Some(place) = own.y.iter().position(|y| *y <= 0.0) {
-            bail!(
+            let fault = fault!(
                 BAD_OPTION,
                 "`{}` is log-normal, but {} was measured at {} = {}", own.y_name, own.y[place], own.x_name, own.x[place];
                 help: "remove such points, or use a normal error"
             );
+            return Err((Cause::Series(k), fault));
         }
         if matches!(own.sigma, Sigma::Formula(_)) {
-            bail!(BAD_OPTION, "`{}` is log-normal, and its sigma is a formula", own.y_name; help: "give the standard deviation of the logarithm as a number");
+            let fault = fault!(BAD_OPTION, "`{}` is log-normal, and its sigma is a formula", own.y_name; help: "give the standard deviation of the logarithm as a number");
+            return Err((Cause::Series(k), fault));
         }
         own.y.iter_mut().for_each(|y| *y = elementary::ln(*y));
         own.y_name = format!("ln({})", own.y_name);
@@ -169,6 +190,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         weight: 1.0,
         sigma: Sigma::Given(vec![sd]),
         column: String::new(),
+        x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
     })

@@ -20,7 +20,7 @@ mod predictions;
 mod prior_data;
 mod term;
 
-pub use adjusted::{Adjustments, Distribution, Prior, adjust};
+pub use adjusted::{Adjustments, Cause, Distribution, Prior, adjust};
 
 pub(crate) use adjusted::{PRIOR, adjusted_from};
 pub use bands::{Band, BandPoint};

@@ -83,6 +83,7 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         weight: 1.0,
         sigma: Sigma::Unknown,
         column: "y".into(),
+        x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
     };
@@ -356,7 +357,7 @@ fn priors_need_known_deviations_and_a_width() {
         }
         let priors = vec![Prior { parameter: 0, distribution }];
         let added = Adjustments { priors, ..Adjustments::default() };
-        adjust(&mut problem, added).map_err(|fault| fault.message)
+        adjust(&mut problem, added).map_err(|(_, fault)| fault.message)
     };
     let normal = |sd| Distribution::Normal { mean: 0.0, sd };
     assert!(build(normal(1.0), true).is_ok());

@@ -9,6 +9,7 @@ use crate::syntax::ast::{
     NamedArgument, ReferencePart, Subscript, UnaryOperator,
 };
 use crate::syntax::errors::SYNTAX_ERROR;
+use crate::syntax::foreign;
 use crate::syntax::parser::{Node, Nodes, Rule};
 use std::sync::Arc;
 
@@ -239,12 +240,14 @@ fn arguments(mut inside: Nodes<'_>) -> Lowered<Arguments> {
             Some(Rule::for_indices) => all.iterators = for_indices(&mut inside)?,
             Some(_) => {
                 let value = argument_value(&mut inside)?;
-                if !all.named.is_empty() {
+                if let Some(last) = all.named.last() {
+                    let help = foreign::decimal_commas([&last.value, &value])
+                        .unwrap_or_else(|| "name it as well, or move it to the front".to_owned());
                     return Err(fault!(
                         SYNTAX_ERROR,
                         "a positional argument cannot follow a named one"
                     )
-                    .help("name it as well, or move it to the front")
+                    .help(help)
                     .at(value.span));
                 }
                 all.positional.push(value);

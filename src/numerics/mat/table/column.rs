@@ -60,6 +60,12 @@ impl<'r> Cells<'r, '_> {
         fault.help("correct the cell, or leave it empty if the value is missing")
     }
 
+    /// A cell by its row, with its place.
+    pub fn cell(self, row: usize) -> String {
+        let (line, cell) = self.all().nth(row).unwrap_or_default();
+        format!("{}: `{}` in `{}`", self.place(line), short(cell), self.name)
+    }
+
     /// Whether all cells are empty.
     pub fn is_empty(self) -> bool {
         self.all().all(|(_, cell)| cell.is_empty())
@@ -287,17 +293,16 @@ pub(crate) fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
 }
 
 /// Moments of one column as seconds, with the dates of another.
-pub fn in_seconds(
-    name: &str,
+pub(super) fn in_seconds(
+    own: Cells<'_, '_>,
     moments: &[Option<Moment>],
-    dates: Option<(&str, &[Option<Moment>])>,
+    dates: Option<(Cells<'_, '_>, &[Option<Moment>])>,
 ) -> Result<(Vec<f64>, String), Fault> {
-    let found = seconds(moments, dates.map(|(_, dates)| dates), name).map_err(|mut fault| {
-        fault.message = format!("column `{name}`: {}", fault.message);
-        fault
-    })?;
-    let with = dates.map_or(String::new(), |(name, _)| format!(" with the dates of `{name}`"));
-    Ok((found.values, format!("`{name}` holds {}{with}", found.meaning)))
+    let dated = dates.map_or(own, |(cells, _)| cells);
+    let cell = |row| dated.cell(row);
+    let found = seconds(moments, dates.map(|(_, dates)| dates), own.name, &cell)?;
+    let with = dates.map_or(String::new(), |(own, _)| format!(" with the dates of `{}`", own.name));
+    Ok((found.values, format!("`{}` holds {}{with}", own.name, found.meaning)))
 }
 
 /// What a word says about a switch: spreadsheets and programs write truth values so.

@@ -140,6 +140,7 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
         })
         .collect();
     let dates = only_dates(&headings, &parsed);
+    let dates = dates.map(|(own, dates)| (cells(layout, own, places, strict), dates));
     let mut named: HashMap<&str, Vec<usize>> = HashMap::new();
     for heading in &headings {
         named.entry(heading.name).or_default().push(heading.column);
@@ -167,7 +168,7 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
             lines: lines.clone(),
             ..About::default()
         };
-        match numbers(heading.name, parsed, dates, &mut about) {
+        match numbers(cells(layout, heading, places, strict), parsed, dates, &mut about) {
             Ok(values) => file.insert_column(name, Matrix::column_vector(values), about),
             Err(fault) => file.fail(name, fault),
         }
@@ -200,14 +201,14 @@ fn two_columns(name: &str, line: usize, columns: [usize; 2], places: Places) -> 
 }
 
 /// The only column with dates and without times of day.
-fn only_dates<'p>(
-    headings: &[Heading<'p>],
+fn only_dates<'p, 'h>(
+    headings: &'p [Heading<'h>],
     parsed: &'p [Option<Result<Parsed, Fault>>],
-) -> Option<(&'p str, &'p [Option<Moment>])> {
+) -> Option<(&'p Heading<'h>, &'p [Option<Moment>])> {
     let dates = headings.iter().zip(parsed).filter_map(|(heading, parsed)| match parsed {
         Some(Ok(Parsed { content: Content::Moments(moments), .. })) => {
             let kind = moments.iter().flatten().next()?.kind();
-            (kind == MomentKind::Date).then_some((heading.name, moments.as_slice()))
+            (kind == MomentKind::Date).then_some((heading, moments.as_slice()))
         }
         _ => None,
     });
@@ -217,9 +218,9 @@ fn only_dates<'p>(
 
 /// The numbers of a column; moments become seconds.
 fn numbers(
-    name: &str,
+    own: Cells<'_, '_>,
     parsed: &Result<Parsed, Fault>,
-    dates: Option<(&str, &[Option<Moment>])>,
+    dates: Option<(Cells<'_, '_>, &[Option<Moment>])>,
     about: &mut About,
 ) -> Result<Vec<f64>, Fault> {
     let parsed = parsed.as_ref().map_err(Clone::clone)?;
@@ -229,7 +230,7 @@ fn numbers(
         Content::Moments(moments) => {
             let kind = moments.iter().flatten().next().map(|moment| moment.kind());
             let dates = dates.filter(|_| kind == Some(MomentKind::Clock));
-            let (values, note) = column::in_seconds(name, moments, dates)?;
+            let (values, note) = column::in_seconds(own, moments, dates)?;
             about.notes.push(note);
             about.unit = Some("s".to_owned());
             Ok(values)

@@ -225,13 +225,14 @@ pub struct Seconds {
 
 /// Moments of a column as seconds. Dates count from the first point; clocks without a date as they
 /// are, unless they show the time of a day. `dates` are of another column, `hint` is the name of
-/// the column with its unit.
+/// the column with its unit, `cell` names a cell of the dates by its row.
 pub fn seconds(
     moments: &[Option<Moment>],
     dates: Option<&[Option<Moment>]>,
     hint: &str,
+    cell: &dyn Fn(usize) -> String,
 ) -> Result<Seconds, Fault> {
-    let day_first = order(dates.unwrap_or(moments))?;
+    let day_first = order(dates.unwrap_or(moments), cell)?;
     // Nanoseconds since the year 0: dates after the year 2262 exceed 64 bits.
     let mut found: Vec<Option<i128>> = Vec::with_capacity(moments.len());
     let mut passes_midnight = false;
@@ -317,45 +318,53 @@ fn daylight_saving(found: &mut [Option<i128>]) -> String {
 }
 
 /// A clock of two parts: hours and minutes where it belongs to a date or the head says so.
-fn minutes(nanoseconds: i64, is_dated: bool, hint: &str) -> Result<i64, Fault> {
-    let hint = hint.to_lowercase();
+fn minutes(nanoseconds: i64, is_dated: bool, name: &str) -> Result<i64, Fault> {
+    let hint = name.to_lowercase();
     if is_dated || hint.contains("h:mm") || hint.contains("hh:mm") {
         return Ok(nanoseconds);
     }
     if hint.contains("m:ss") {
         return Ok(nanoseconds / 60);
     }
-    Err(fault!(BAD_TABLE, "the times are ambiguous: hours and minutes, or minutes and seconds")
-        .help("write hh:mm:ss, or give the unit in the header: `time [hh:mm]` or `time [mm:ss]`"))
+    Err(fault!(
+        BAD_TABLE,
+        "column `{name}`: the times are ambiguous: hours and minutes, or minutes and seconds"
+    )
+    .help("write hh:mm:ss, or give the unit in the header: `time [hh:mm]` or `time [mm:ss]`"))
 }
 
 /// Whether the day is first where two numbers could be it; what the dates do not show is refused
-/// unless it does not matter.
-fn order(moments: &[Option<Moment>]) -> Result<bool, Fault> {
-    let either = |moment: &Option<Moment>| match moment.as_ref()?.date? {
-        Date::Either { year, first, second } => Some((year, first, second)),
+/// unless it does not matter. `cell` names a cell by its row.
+fn order(moments: &[Option<Moment>], cell: &dyn Fn(usize) -> String) -> Result<bool, Fault> {
+    let either = |(row, moment): (usize, &Option<Moment>)| match moment.as_ref()?.date? {
+        Date::Either { year, first, second } => Some((row, [year, first, second])),
         Date::Known(_) => None,
     };
-    let mut dates = moments.iter().filter_map(either);
-    let Some(one) = dates.next() else { return Ok(true) };
-    let (mut day_first, mut month_first, mut differ) = (one.1 > 12, one.2 > 12, false);
-    for date in dates {
-        day_first |= date.1 > 12;
-        month_first |= date.2 > 12;
-        differ |= date != one;
-    }
-    match (day_first, month_first) {
-        (true, false) => Ok(true),
-        (false, true) => Ok(false),
-        (false, false) if !differ => Ok(true),
-        _ => Err(fault!(
+    let dates = || moments.iter().enumerate().filter_map(either);
+    let Some((row, one)) = dates().next() else { return Ok(true) };
+    let day_first = dates().find(|(_, date)| date[1] > 12);
+    let month_first = dates().find(|(_, date)| date[2] > 12);
+    let fault = match (day_first, month_first) {
+        (Some(_), None) => return Ok(true),
+        (None, Some(_)) => return Ok(false),
+        (None, None) if dates().all(|(_, date)| date == one) => return Ok(true),
+        (None, None) => {
+            let [year, first, second] = one;
+            fault!(
+                BAD_TABLE,
+                "{} is ambiguous: {year}-{second:02}-{first:02} with the day first, \
+                 {year}-{first:02}-{second:02} with the month first",
+                cell(row)
+            )
+        }
+        (Some((day, _)), Some((month, _))) => fault!(
             BAD_TABLE,
-            "the date `{}/{}` is ambiguous: day and month, or month and day",
-            one.1,
-            one.2
-        )
-        .help("write dates as 2024-03-05")),
-    }
+            "the dates are ambiguous: {} has the day first, {} the month",
+            cell(day),
+            cell(month)
+        ),
+    };
+    Err(fault.help("write all dates of the column as 2024-03-05, or with points as 05.03.2024"))
 }
 
 fn resolved(date: Date, day_first: bool) -> [i64; 3] {
@@ -373,7 +382,9 @@ mod tests {
     fn of(cells: &[&str]) -> Result<(Vec<f64>, String), String> {
         let moments: Vec<_> = cells.iter().map(|cell| moment(cell)).collect();
         assert!(moments.iter().all(Option::is_some), "{cells:?}");
-        seconds(&moments, None, "t").map(|s| (s.values, s.meaning)).map_err(|fault| fault.message)
+        seconds(&moments, None, "t", &|row| format!("row {row}"))
+            .map(|s| (s.values, s.meaning))
+            .map_err(|fault| fault.message)
     }
 
     #[test]
@@ -421,10 +432,11 @@ mod tests {
 
     #[test]
     fn what_the_column_does_not_show_is_refused() {
-        assert!(
-            of(&["3/4/2024 1:00:00", "3/5/2024 1:00:00"]).unwrap_err().contains("day and month")
-        );
-        assert!(of(&["13/1/2024", "1/13/2024"]).unwrap_err().contains("day and month"));
+        assert!(of(&["3/4/2024 1:00:00", "3/5/2024 1:00:00"]).unwrap_err().contains(
+            "row 0 is ambiguous: 2024-04-03 with the day first, 2024-03-04 with the month first"
+        ));
+        let both = of(&["13/1/2024", "1/13/2024"]).unwrap_err();
+        assert!(both.contains("row 0 has the day first, row 1 the month"), "{both}");
         assert_eq!(of(&["3/4/2024 1:00:00", "3/4/2024 1:00:01"]).unwrap().0, [0.0, 1.0]);
         assert_eq!(of(&["31/1/2024", "1/2/2024"]).unwrap().0, [0.0, 86_400.0]);
     }

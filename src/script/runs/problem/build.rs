@@ -13,13 +13,13 @@ use super::operators::{self, Named};
 use super::segments::Segment;
 use super::{experiment, imported, own_fitness, set_file};
 use crate::Session;
-use crate::diag::{Diagnostic, Fault, visible_line};
+use crate::diag::{At as _, Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::fmi::import::Imported;
 use crate::ga::optimizer::METHODS;
 use crate::identify::Descriptions;
 use crate::identify::fitness::{FITNESSES, Fitness};
-use crate::identify::problem::inference::adjust;
+use crate::identify::problem::inference::{Cause, adjust};
 use crate::identify::problem::{
     Experiment, Free, Inference, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS, Origins,
     Problem, Series, Simulate, Stop, decide, likelihood,
@@ -73,6 +73,8 @@ struct Experiments {
     noise: f64,
     calibration: Option<Calibration>,
     undecided: Vec<Undecided>,
+    /// The series with log-normal errors, and where that is written.
+    logarithmic: Vec<(usize, Span)>,
 }
 
 /// Builds the problem.
@@ -104,44 +106,81 @@ fn build_in(
     if unit.is_none() {
         check_class(session, file)?;
     } else {
-        let bytes = session.read_bytes(&folder.join(&file.model)).map_err(one)?;
+        let bytes = session
+            .read_bytes(&folder.join(&file.model))
+            .at(file.places.at(&["model"]))
+            .map_err(alone)?;
         origins.add(format!("`{}`", file.model), &bytes);
     }
     set_file::read(session, file, unit.as_deref(), folder, (&mut notes, &mut origins))?;
     let file = &*file;
     origins.add_problem(&file.table);
     let data = data_of(session, file, folder, (&mut notes, &mut origins))?;
-    let free = free_parameters(file, &data).map_err(one)?;
+    let free = free_parameters(file, &data).map_err(alone)?;
+    if free.is_empty() {
+        let fault = fault!(BAD_OPTION, "no parameter is estimated");
+        let place = file.places.at(&["parameters"]);
+        return Err(vec![fault.help("give one a range: `k = { min = 0.1, max = 10 }`").at(place)]);
+    }
     let model = (file, unit.as_ref());
     let mut read = experiments(session, model, &data, &free, &mut notes)?;
     if file.fitness.is_none() {
         decide(&mut read.series);
     }
-    let Experiments { fitted, series, validation, noise, calibration, undecided } = read;
+    let Experiments { fitted, series, validation, noise, calibration, undecided, logarithmic } =
+        read;
     let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &fitted);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&fitted).map_err(one)?);
     let experiments = fitted.clone();
     let cancel = session.world.interrupt_flag();
-    let inference = super::inference::inference(file, &fitted, cancel.as_ref()).map_err(one)?;
+    let inference = super::inference::inference(file, &fitted, cancel.as_ref()).map_err(alone)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&fitted)?) as Box<dyn Simulate>);
     let usual = if objectives.len() > 1 { "nsga2" } else { METHODS[0].name };
     let method = operators::method(session, file, usual, parameters.len())?;
     let parts = (parameters, series, objectives);
-    let mut problem = assemble(file, parts, method, noise, Box::new(simulator)).map_err(one)?;
+    let mut problem = assemble(file, parts, method, noise, Box::new(simulator)).map_err(alone)?;
     problem.descriptions = descriptions(&experiments, &problem.parameters, &inference);
     problem.inference = inference;
-    let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
-    adjust(&mut problem, adjustments).map_err(one)?;
+    adjusted(file, &mut problem, &logarithmic).map_err(alone)?;
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
     let doubts = Doubts { undecided, readings: misread::all(&file.experiment) };
     Ok(Built { problem, experiments, validation, origins, notes, calibration, doubts, unit })
 }
 
+/// Adds priors, constraints and logarithms.
+fn adjusted(
+    file: &ProblemFile,
+    problem: &mut Problem,
+    logarithmic: &[(usize, Span)],
+) -> Result<(), Diagnostic> {
+    let series = logarithmic.iter().map(|own| own.0).collect();
+    let seed = crate::ga::Mrg32k3a::new(&problem.seed).map(drop);
+    seed.at(file.places.at(&["seed"]))?;
+    let adjustments = super::inference::adjustments(file, &problem.parameters, series)?;
+    let free: Vec<String> = problem.parameters.iter().map(|own| own.name.clone()).collect();
+    adjust(problem, adjustments).map_err(|(cause, fault)| {
+        fault.at(match cause {
+            Cause::Series(series) => {
+                let own = logarithmic.iter().find(|own| own.0 == series);
+                own.map_or(Span::NONE, |own| own.1)
+            }
+            Cause::Prior(parameter) => {
+                let name = free[parameter].split('@').next().unwrap_or_default();
+                file.places.at(&["parameters", name, "prior"])
+            }
+        })
+    })
+}
+
 fn one(fault: Fault) -> Vec<Diagnostic> {
     vec![fault.at(Span::NONE)]
+}
+
+fn alone(error: Diagnostic) -> Vec<Diagnostic> {
+    vec![error]
 }
 
 /// Loads the Modelica files of the problem; the only class of them is its model where it names none.
@@ -151,22 +190,27 @@ fn load_models(
     folder: &Path,
 ) -> Result<(), Vec<Diagnostic>> {
     let mut loaded = Vec::new();
-    for models in &file.files {
-        loaded.extend(session.load_path(&folder.join(models))?);
+    for (number, models) in file.files.iter().enumerate() {
+        let place = file.places.at(&["files", &number.to_string()]);
+        let own = session.load_path(&folder.join(models));
+        let placed = |errors: Vec<Diagnostic>| -> Vec<Diagnostic> {
+            errors.into_iter().map(|own| own.or_at(place)).collect()
+        };
+        loaded.extend(own.map_err(placed)?);
     }
     if file.model.is_empty() {
-        file.model = only_class(&loaded).map_err(one)?;
+        file.model = only_class(&loaded).at(file.places.at(&["files"])).map_err(alone)?;
     }
     Ok(())
 }
 
 /// Refuses a model whose class is not loaded, at its place.
 fn check_class(session: &mut Session, file: &ProblemFile) -> Result<(), Vec<Diagnostic>> {
-    let base = Base::of(&file.model, file.places.model).map_err(|error| vec![error])?;
+    let base = Base::of(&file.model, file.places.text(&["model"])).map_err(|error| vec![error])?;
     if session.find_class(&base.class)? {
         return Ok(());
     }
-    let place = file.places.model.unwrap_or(Span::NONE);
+    let place = file.places.at(&["model"]);
     let name = base.class.to_string();
     let fault = match name.strip_suffix(".mo") {
         Some(class) => fault!(UNKNOWN_CLASS, "there is no class `{name}`")
@@ -189,12 +233,12 @@ fn data_of<'f>(
     let mut all = Vec::new();
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
-        let there = |fault: Fault| vec![fault.at(entry.places.data)];
+        let there = |fault: Fault| vec![fault.at(entry.places.at(&["data"]))];
         let bytes = session.read_bytes(&data).map_err(there)?;
         origins.add(format!("`{}`", entry.data.display()), &bytes);
         let table = results::read_data(&data.to_string_lossy(), &bytes).map_err(there)?;
         let cut = experiment::rows((entry, number), &table, notes);
-        let (count, segments) = cut.map_err(|fault| vec![fault.at(entry.places.x)])?;
+        let (count, segments) = cut.map_err(alone)?;
         let label = entry.label(number);
         all.push(ExperimentData { entry, label, table, count, segments });
     }
@@ -228,6 +272,9 @@ fn experiments(
             continue;
         }
         all.fitted.push(built.experiment);
+        let logarithmic = super::inference::logarithmic(entry).map_err(alone)?;
+        let first = all.series.len();
+        all.logarithmic.extend(logarithmic.into_iter().map(|(own, place)| (first + own, place)));
         all.series.extend(built.series);
         for own in built.undecided {
             if !all.undecided.contains(&own) {
@@ -258,7 +305,7 @@ fn objectives(
     noise: f64,
 ) -> Result<Vec<Objective>, Vec<Diagnostic>> {
     if series.iter().any(|series| series.sigma.is_estimated()) {
-        return likelihood_alone(file, series, noise).map_err(one);
+        return likelihood_alone(file, series, noise).map_err(alone);
     }
     let names = match &file.fitness {
         None => vec![FITNESSES[0].name.to_owned()],
@@ -272,7 +319,9 @@ fn objectives(
     };
     let sigmas_are_known = series.iter().all(|series| series.sigma.is_known());
     let mut objectives = Vec::new();
-    for name in names {
+    for (number, name) in names.into_iter().enumerate() {
+        let place = file.places.at(&["fitness", &number.to_string()]);
+        let one = |fault: Fault| vec![fault.at(place)];
         let entry = registry::find("fitness function", FITNESSES, &name);
         if entry.is_err() && own_fitness::is_function(session, &name) {
             let own = own_fitness::compiled(session, &name, series)?;
@@ -297,7 +346,7 @@ fn likelihood_alone(
     file: &ProblemFile,
     series: &[Series],
     noise: f64,
-) -> Result<Vec<Objective>, Fault> {
+) -> Result<Vec<Objective>, Diagnostic> {
     let known = |name: &String| {
         registry::find("fitness function", FITNESSES, name)
             .is_ok_and(|entry| ["sum_of_squares", "log_likelihood"].contains(&entry.name))
@@ -308,14 +357,20 @@ fn likelihood_alone(
         Some(OneOrMany::Many(_) | OneOrMany::Set(_)) => false,
     };
     if !allowed {
-        bail!(
+        let fault = fault!(
             BAD_OPTION,
             "`sigma = \"estimate\"` minimizes the negative log-likelihood and cannot be combined \
              with another fitness";
             help: "remove `fitness`, or give sigmas as numbers"
         );
+        return Err(fault.at(file.places.at(&["fitness"])));
     }
-    Ok(vec![("negative log-likelihood".to_owned(), likelihood(series, noise)?)])
+    let likelihood = likelihood(series, noise).map_err(|(name, fault)| {
+        let has_it = |entry: &&ExperimentEntry| entry.outputs.contains_key(&name);
+        let entry = file.experiment.iter().find(has_it);
+        fault.at(entry.map_or(Span::NONE, |own| own.places.at(&["outputs", &name, "sigma"])))
+    })?;
+    Ok(vec![("negative log-likelihood".to_owned(), likelihood)])
 }
 
 type Objective = (String, Box<dyn Fitness>);
@@ -326,11 +381,15 @@ fn assemble(
     (name, method): Named,
     noise: f64,
     simulator: MakeSimulator,
-) -> Result<Problem, Fault> {
+) -> Result<Problem, Diagnostic> {
     let parameters = on_its_scale(file, name, method.in_natural_units(), parameters)?;
     let stop = &file.stop;
     if let Some(seconds) = stop.seconds.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
-        bail!(BAD_OPTION, "`seconds` of the stop conditions is {seconds}; it must be positive");
+        let fault = fault!(
+            BAD_OPTION,
+            "`seconds` of the stop conditions is {seconds}; it must be positive"
+        );
+        return Err(fault.at(file.places.at(&["stop", "seconds"])));
     }
     let stop = Stop {
         generations: stop.generations,
@@ -378,18 +437,19 @@ fn on_its_scale(
     method: &str,
     natural: bool,
     mut parameters: Vec<Free>,
-) -> Result<Vec<Free>, Fault> {
+) -> Result<Vec<Free>, Diagnostic> {
     if !natural {
         return Ok(parameters);
     }
     for (name, entry) in &file.parameters {
         if entry.scale.as_deref().is_some_and(|scale| scale.starts_with("log")) {
-            bail!(
+            let fault = fault!(
                 BAD_OPTION,
                 "`{name}` has a logarithmic scale, but `{method}` searches on a linear scale, as \
                  published";
                 help: "remove `scale`, or use `genetic`"
             );
+            return Err(fault.at(file.places.at(&["parameters", name, "scale"])));
         }
     }
     parameters.iter_mut().for_each(|free| free.logarithmic = false);
@@ -397,10 +457,14 @@ fn on_its_scale(
 }
 
 /// The free parameters: those of single experiments once for each, initial values once for each part.
-fn free_parameters(file: &ProblemFile, data: &[ExperimentData<'_>]) -> Result<Vec<Free>, Fault> {
+fn free_parameters(
+    file: &ProblemFile,
+    data: &[ExperimentData<'_>],
+) -> Result<Vec<Free>, Diagnostic> {
     let mut free: Vec<Free> = Vec::new();
     for (name, entry) in &file.parameters {
-        let Role::Free { range, logarithmic } = entry.role(name)? else { continue };
+        let place = file.places.parameter(name);
+        let Role::Free { range, logarithmic } = entry.role(name).at(place)? else { continue };
         let unit = entry.unit.clone().unwrap_or_default();
         let fitted = data.iter().filter(|own| !own.entry.validation);
         let mut names: Vec<String> = fitted
@@ -411,7 +475,8 @@ fn free_parameters(file: &ProblemFile, data: &[ExperimentData<'_>]) -> Result<Ve
         }
         for name in names {
             if !free.iter().any(|known| known.name == name) {
-                free.push(Free::new(name, unit.clone(), range, logarithmic, entry.start)?);
+                let own = Free::new(name, unit.clone(), range, logarithmic, entry.start);
+                free.push(own.at(place)?);
             }
         }
     }

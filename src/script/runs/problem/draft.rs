@@ -5,9 +5,9 @@ use super::draft_subject::{DraftOptions, Estimable, Subject};
 use super::matching::{self, DataColumn, Meaning};
 use super::{build, fault_codes, file};
 use crate::Session;
-use crate::bail;
 use crate::diag::suggest::listed;
 use crate::diag::{Diagnostic, Fault};
+use crate::fault;
 use crate::flatten::FlatModel;
 use crate::mat::{self, MatFile, Matrix, MatrixKind};
 use crate::registry::BAD_OPTION;
@@ -99,7 +99,9 @@ fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
         }
     }
     if found.len() < 2 {
-        bail!(BAD_OPTION, "`{}` has fewer than two columns of numbers", table.file_name);
+        let fault =
+            fault!(BAD_OPTION, "`{}` has fewer than two columns of numbers", table.file_name);
+        return Err(fault.help_if(table.unread_columns()));
     }
     Ok(found)
 }

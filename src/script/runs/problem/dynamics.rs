@@ -108,7 +108,7 @@ pub(super) fn steady(
         } else {
             _ = writeln!(enclosing.equations, "  der({name}) = 0;");
         }
-        enclosing.release(&name, entry.places.data);
+        enclosing.release(&name, entry.places.at(&["data"]));
     }
     Ok(sums)
 }

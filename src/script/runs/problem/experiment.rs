@@ -11,6 +11,7 @@ use super::{dynamics, enclosing_class, parameters, time_axis};
 use crate::Session;
 use crate::codegen::Program;
 use crate::diag::{At as _, Diagnostic, Fault};
+use crate::fault;
 use crate::flatten::{self, FlatModel};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
@@ -19,9 +20,8 @@ use crate::models::imported::CO_SIMULATION;
 use crate::models::simulation::{self, SimulationOptions};
 use crate::models::static_curve;
 use crate::registry::BAD_OPTION;
-use crate::sim::{Residual, Settings, TimeBudget};
+use crate::sim::{self, Residual, Settings, TimeBudget};
 use crate::source::Span;
-use crate::{bail, fault};
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -71,6 +71,8 @@ pub(super) struct Abscissa {
     entry: ColumnEntry,
     /// The variable.
     pub name: String,
+    /// The name of its column.
+    own: String,
     column: Column,
     /// Times of inputs that follow the rows; X itself where it is not time.
     pub time: Vec<f64>,
@@ -108,24 +110,27 @@ pub(super) fn rows(
     (entry, number): (&ExperimentEntry, usize),
     table: &MatFile,
     notes: &mut Notes,
-) -> Result<(usize, Vec<Segment>), Fault> {
+) -> Result<(usize, Vec<Segment>), Diagnostic> {
     let (x, name, own) = x_of(entry, table);
+    let [place, cuts] = [["x"], ["segments"]].map(|way| entry.places.at(&way));
     notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
-    let column = data::column(table, &x, &name, notes)?;
+    let column = data::column(table, &x, &name, notes).at(place)?;
     let count = column.values.len();
     if name != "time" {
         if entry.segments.is_some() {
-            bail!(BAD_OPTION, "`segments` cuts over time, but X is `{name}`"; help: "use `time` as X, or remove it");
+            let fault = fault!(BAD_OPTION, "`segments` cuts over time, but X is `{name}`"; help: "use `time` as X, or remove it");
+            return Err(fault.at(cuts));
         }
         return Ok((count, vec![Segment::whole(entry, number, None)]));
     }
-    let origin = time_axis::origin(&own, &column, (&x, entry.start_time), (table, notes))?;
+    let origin = time_axis::origin(&own, &column, (&x, entry.start_time), (table, notes));
+    let origin = origin.at(place)?;
     if entry.segments.is_none() {
         return Ok((count, vec![Segment::whole(entry, number, origin)]));
     }
-    let seconds = time_axis::seconds(&column, &x, origin, (table, notes))?;
+    let seconds = time_axis::seconds(&column, &x, origin, (table, notes)).at(place)?;
     let rows = Rows { column: &column, seconds: &seconds, origin };
-    Ok((count, segments((entry, number), table, &rows, notes)?))
+    Ok((count, segments((entry, number), table, &rows, notes).at(cuts)?))
 }
 
 /// X: its entry, the variable that it is, and its column. A bare name is both; the column of time is
@@ -142,10 +147,6 @@ fn x_of(entry: &ExperimentEntry, table: &MatFile) -> (ColumnEntry, String, Strin
     (x, name, column)
 }
 
-fn one(fault: Fault) -> Vec<Diagnostic> {
-    vec![fault.at(Span::NONE)]
-}
-
 impl Source<'_> {
     /// Reads a part of the experiment.
     ///
@@ -158,20 +159,20 @@ impl Source<'_> {
         notes: &mut Notes,
     ) -> Result<Built, Vec<Diagnostic>> {
         let abscissa = self.abscissa(notes);
-        let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.x)])?;
+        let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.at(&["x"]))])?;
         let class = self.class(session, &abscissa, notes)?;
         let translated = simulation::translated(session, &class.name)?;
         let program = translated.program.clone();
         self.check(session, &abscissa.name, &class, &translated)?;
         parameters::note_computed(&class.parameters, &translated, notes);
         let compiled = match class.is_driven {
-            true => {
-                static_curve::model(&self.file.model, &translated, &abscissa.name).map_err(one)?
-            }
+            true => static_curve::model(&self.file.model, &translated, &abscissa.name)
+                .map_err(|fault| vec![fault.at(self.entry.places.at(&["x"]))])?,
             false => CompiledModel::new(&self.file.model, program.clone()),
         };
         let has_states = !program.sorted().states.is_empty();
-        let base = Base::of(&self.file.model, self.file.places.model).map_err(|e| vec![e])?;
+        let base =
+            Base::of(&self.file.model, self.file.places.text(&["model"])).map_err(|e| vec![e])?;
         let class_stop = session.classes.library.definition(&base.class);
         let class_stop = class_stop.and_then(|class| flatten::experiment(&class).stop_time);
         let subject = Subject {
@@ -207,13 +208,15 @@ impl Source<'_> {
             table: self.table,
             model: &*model,
             x_name: &abscissa.name,
+            x_column: &abscissa.own,
             x: Vec::new(),
             start: 0.0,
         };
-        let x = abscissa.in_unit(&comparison, notes).at(self.entry.places.x);
+        let x = abscissa.in_unit(&comparison, notes).at(self.entry.places.at(&["x"]));
         comparison.x = x.map_err(|error| vec![error])?;
         let begin = self.begin(annotated.start_time, &comparison, notes);
-        let settings = self.settings(session, &annotated, begin, &comparison).map_err(one)?;
+        let settings = self.settings(session, &annotated, begin, &comparison);
+        let settings = settings.map_err(|error| vec![error])?;
         comparison.start = settings.start;
         if let Some(stop) = stop {
             note_start(&comparison, notes);
@@ -223,7 +226,8 @@ impl Source<'_> {
         let (observations, series) =
             comparison.outputs(observed, notes).map_err(|error| vec![error])?;
         if observations.is_empty() {
-            return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
+            let fault = fault!(BAD_OPTION, "{name} has no outputs to compare"; help: "name one in `outputs`");
+            return Err(vec![fault.at(self.entry.places.at(&["outputs"]))]);
         }
         let experiment = Experiment {
             name,
@@ -246,9 +250,10 @@ impl Source<'_> {
         model: &simulation::Translated,
     ) -> Result<(), Vec<Diagnostic>> {
         let (file, places) = (self.file, &self.entry.places);
-        let outputs = self.entry.outputs.keys().map(|name| (name.as_str(), places.column(name)));
+        let outputs =
+            self.entry.outputs.keys().map(|name| (name.as_str(), places.at(&["outputs", name])));
         let outputs: Vec<(&str, Span)> = outputs.collect();
-        parameters::check_variables(&[(x_name, places.x)], model)
+        parameters::check_variables(&[(x_name, places.at(&["x"]))], model)
             .map_err(|error| vec![self.entry.about_x(error)])?;
         parameters::check_variables(&outputs, model).map_err(|error| vec![error])?;
         parameters::check_free(session, file, &class.parameters, model)?;
@@ -266,6 +271,9 @@ impl Source<'_> {
         let time = match name.as_str() {
             "time" => {
                 notes.about(table, time_axis::repeated(&own, &column));
+                if !self.changes_within_stamps(&own, &column.values) {
+                    notes.about(table, time_axis::without_seconds(&own, &column.values));
+                }
                 if self.segment.origin.is_none() {
                     time_axis::note_unit(&own, &column, &entry, (table, notes));
                 }
@@ -276,7 +284,16 @@ impl Source<'_> {
                 column.values.clone()
             }
         };
-        Ok(Abscissa { entry, name, column, time })
+        Ok(Abscissa { entry, name, own, column, time })
+    }
+
+    /// Whether an input changes between rows of one time stamp.
+    fn changes_within_stamps(&self, name: &str, times: &[f64]) -> bool {
+        self.entry.inputs.iter().any(|(input, column)| {
+            let column = self.table.column(column.entry().column.as_deref().unwrap_or(input));
+            let changes = |values: &[f64]| time_axis::truncated(name, times, (input, values));
+            column.is_ok_and(|own| changes(&own.values).is_some())
+        })
     }
 
     /// The class around the model, loaded.
@@ -287,8 +304,9 @@ impl Source<'_> {
         notes: &mut Notes,
     ) -> Result<Class, Vec<Diagnostic>> {
         let (file, entry) = (self.file, self.entry);
-        let base = Base::of(&file.model, file.places.model).map_err(|error| vec![error])?;
-        let here = (self.number, entry.places.data);
+        let base =
+            Base::of(&file.model, file.places.text(&["model"])).map_err(|error| vec![error])?;
+        let here = (self.number, entry.places.at(&["data"]));
         let mut enclosing = EnclosingClass::default();
         let (label, segment, free) = (self.label, self.segment, self.free);
         let setting = parameters::Setting { file, entry, label, segment, free };
@@ -310,7 +328,8 @@ impl Source<'_> {
             let place = observed.len();
             let delayed =
                 dynamics::delayed(file, y_name, place, &requested, &x.name, &mut enclosing);
-            let delayed = delayed.map_err(|fault| vec![fault.at(entry.places.column(y_name))])?;
+            let delayed = delayed
+                .map_err(|fault| vec![fault.at(entry.places.at(&["outputs", y_name, "delay"]))])?;
             observed.push(delayed);
         }
         if entry.steady_state {
@@ -318,9 +337,10 @@ impl Source<'_> {
             let plain = simulation::translated(session, &class)?.program.clone();
             setting.avoid_zeros(&parameters, &plain, &mut enclosing);
             let sums = dynamics::steady(file, entry, plain.sorted(), &mut enclosing);
+            let sums = sums.at(entry.places.at(&["steady_state"])).map_err(|error| vec![error])?;
             notes.about(
                 self.table,
-                sums.map_err(one)?.iter().map(|sum| {
+                sums.iter().map(|sum| {
                     format!("the steady state keeps the sum that the equations conserve: {sum}")
                 }),
             );
@@ -360,7 +380,7 @@ impl Source<'_> {
         annotated: &flatten::Experiment,
         begin: Option<f64>,
         comparison: &Comparison<'_>,
-    ) -> Result<Settings, Fault> {
+    ) -> Result<Settings, Diagnostic> {
         let entry = self.entry;
         let tolerance = annotated.tolerance.map_or(TOLERANCE, |tolerance| tolerance.min(TOLERANCE));
         let options = SimulationOptions {
@@ -370,7 +390,19 @@ impl Source<'_> {
             method: entry.integrator.clone().filter(|name| name != CO_SIMULATION),
             ..SimulationOptions::default()
         };
-        let mut settings = simulation::settings(annotated, &options)?;
+        // What the entries of the experiment can make wrong, each at its place.
+        let has_limits = entry.start_time.or(entry.stop_time).is_some();
+        let wrong = [
+            ("tolerance", entry.tolerance.is_some_and(|own| !simulation::is_tolerance(own))),
+            (
+                "integrator",
+                options.method.as_deref().is_some_and(|own| sim::find_integrator(own).is_err()),
+            ),
+            (if entry.stop_time.is_some() { "stop_time" } else { "start_time" }, has_limits),
+        ];
+        let wrong = wrong.iter().find(|own| own.1).map_or("data", |own| own.0);
+        let settings = simulation::settings(annotated, &options);
+        let mut settings = settings.at(entry.places.at(&[wrong]))?;
         settings.takes_exact_steps = entry.integrator.is_none();
         let for_rows = STEPS_PER_ROW * comparison.x.len() as u64;
         settings.max_total_steps = settings.max_total_steps.max(for_rows);
@@ -464,13 +496,18 @@ pub(super) fn note_unused_stop(comparison: &Comparison<'_>, notes: &mut Notes) {
 }
 
 /// What a simulation may cost.
-fn limit(session: &Session, entry: &ExperimentEntry, settings: &mut Settings) -> Result<(), Fault> {
+fn limit(
+    session: &Session,
+    entry: &ExperimentEntry,
+    settings: &mut Settings,
+) -> Result<(), Diagnostic> {
     if let Some(steps) = entry.max_steps {
         (settings.max_steps, settings.max_total_steps) = (steps, steps);
     }
     let Some(seconds) = entry.max_seconds else { return Ok(()) };
     if seconds.is_nan() || seconds <= 0.0 {
-        bail!(BAD_OPTION, "`max_seconds` is {seconds}; it must be positive");
+        let fault = fault!(BAD_OPTION, "`max_seconds` is {seconds}; it must be positive");
+        return Err(fault.at(entry.places.at(&["max_seconds"])));
     }
     // Where there is no clock, nothing is late.
     settings.time_budget = session.world.clock().map(|clock| TimeBudget { seconds, clock });
@@ -533,7 +570,7 @@ fn drive(
     }
     let typical = static_curve::typical(x);
     let driver = static_curve::DRIVER;
-    let place = entry.places.x;
+    let place = entry.places.at(&["x"]);
     enclosing.bind(x_name, enclosing_class::reference(driver, place), place);
     _ = writeln!(enclosing.declarations, "  parameter Real {driver} = {typical:e};");
     enclosing.elements.push((driver.to_owned(), x_name.to_owned()));

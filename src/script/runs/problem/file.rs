@@ -1,6 +1,6 @@
 //! A problem as a TOML file or a record of a script states it.
 
-use super::places::{self, ExperimentPlaces, Places};
+use super::places::Places;
 use super::refusal;
 use crate::bail;
 use crate::diag::Diagnostic;
@@ -141,7 +141,7 @@ pub(super) struct ExperimentEntry {
     pub(crate) max_seconds: Option<f64>,
     /// Where its entries are written.
     #[serde(skip)]
-    pub places: ExperimentPlaces,
+    pub places: Places,
 }
 
 /// Values of parameters: a table, or the name of a file of SSP, whose values are read into it.
@@ -350,9 +350,10 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
     file.table = text.parse().unwrap_or_default();
     refusal::printable(&file.table).map_err(|fault| fault.at(Span::new(source, 0, 0)))?;
     file.text = text.to_owned();
-    file.places = places::places(source, text);
-    for (entry, places) in file.experiment.iter_mut().zip(&file.places.experiments) {
-        entry.places = places.clone();
+    file.places = Places::of(source, text);
+    for (number, entry) in file.experiment.iter_mut().enumerate() {
+        let own = file.places.within(&["experiment", &number.to_string()]);
+        entry.places = own.cloned().unwrap_or_default();
     }
     Ok(file)
 }

@@ -42,7 +42,7 @@ pub(super) fn unit(
     let mut methods: Vec<bool> =
         methods.map(|method| method == Some(imported::CO_SIMULATION)).collect();
     methods.dedup();
-    let place = file.places.model.unwrap_or(Span::NONE);
+    let place = file.places.at(&["model"]);
     let method = match methods.as_slice() {
         [false] | [] => None,
         [true] => Some(imported::CO_SIMULATION),
@@ -73,14 +73,16 @@ pub(super) fn build(
 ) -> Result<Built, Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
     let entry = source.entry;
-    let abscissa = &source.abscissa(notes).at(entry.places.x).map_err(one)?;
-    refuse_dynamics(source).at(entry.places.data).map_err(one)?;
+    let abscissa = &source.abscissa(notes).at(entry.places.at(&["x"])).map_err(one)?;
+    refuse_dynamics(source).map_err(one)?;
     let (given, parameters) = values(source, unit).map_err(one)?;
     let (samples, undecided) = follow(source, unit, abscissa, notes).map_err(one)?;
-    let model = imported::model(unit, given, samples).at(entry.places.data).map_err(one)?;
+    let model =
+        imported::model(unit, given, samples).at(entry.places.at(&["data"])).map_err(one)?;
     check_names(&model, entry, &abscissa.name).map_err(one)?;
     let free: Vec<String> = parameters.iter().map(|(_, name)| name.clone()).collect();
-    let others = imported::other_starts(&model, &free).at(entry.places.data).map_err(one)?;
+    let others =
+        imported::other_starts(&model, &free).at(entry.places.at(&["data"])).map_err(one)?;
     others.into_iter().for_each(|sentence| notes.warn(sentence));
     if let Some(sentence) = other_kind(unit) {
         notes.add(sentence);
@@ -133,23 +135,24 @@ fn fixed_steps(unit: &Imported) -> Option<String> {
 }
 
 /// Refuses what becomes a part of the class around a Modelica model.
-fn refuse_dynamics(source: &Source<'_>) -> Result<(), Fault> {
+fn refuse_dynamics(source: &Source<'_>) -> Result<(), Diagnostic> {
     let entry = source.entry;
-    let delayed = entry.all_outputs().any(|(_, column)| column.delay.is_some());
-    let what = if entry.steady_state {
-        "`steady_state`"
-    } else if delayed {
-        "`delay`"
+    let delayed = entry.all_outputs().find(|(_, column)| column.delay.is_some());
+    let (what, place) = if entry.steady_state {
+        ("steady_state", entry.places.at(&["steady_state"]))
+    } else if let Some((name, _)) = delayed {
+        ("delay", entry.places.at(&["outputs", name, "delay"]))
     } else if entry.segments.is_some() {
-        "`segments`"
+        ("segments", entry.places.at(&["segments"]))
     } else {
         return Ok(());
     };
-    bail!(
+    let fault = fault!(
         BAD_OPTION,
-        "{what} of {} needs the equations of the model, which an FMU does not show", source.label;
+        "`{what}` of {} needs the equations of the model, which an FMU does not show", source.label;
         help: "remove it, or use the Modelica model that the FMU was made of"
-    )
+    );
+    Err(fault.at(place))
 }
 
 /// The values that an experiment gives, and the free parameters.
@@ -178,8 +181,9 @@ fn values(
             }
         }
     }
-    for (name, value) in entry.set.values.iter().chain(&entry.start) {
-        let place = entry.places.value(name);
+    let values = entry.set.values.iter().map(|own| ("set", own));
+    for (table, (name, value)) in values.chain(entry.start.iter().map(|own| ("start", own))) {
+        let place = entry.places.at(&[table, name]);
         if file.parameters.contains_key(name) {
             let fault = fault!(BAD_OPTION, "`{name}` is set both in {label} and in `[parameters]`";
                 help: "remove one of the two");
@@ -188,7 +192,7 @@ fn values(
         set(&mut given, unit, name, value).at(place)?;
     }
     let layout = unit.layout(&given.numbers);
-    let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
+    let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(file.places.at(&["model"])))?;
     for (_, name) in &names {
         check_free(unit, &layout, name).at(file.places.parameter(name))?;
     }
@@ -233,9 +237,9 @@ fn check_names(
     x_name: &str,
 ) -> Result<(), Diagnostic> {
     for name in entry.outputs.keys() {
-        check_name(model, name, entry.places.column(name))?;
+        check_name(model, name, entry.places.at(&["outputs", name]))?;
     }
-    check_name(model, x_name, entry.places.x).map_err(|error| entry.about_x(error))
+    check_name(model, x_name, entry.places.at(&["x"])).map_err(|error| entry.about_x(error))
 }
 
 fn check_name(model: &ImportedModel, name: &str, place: Span) -> Result<(), Diagnostic> {

@@ -1,15 +1,18 @@
 //! What a problem file asks beyond the estimates, checked against its models.
 
 use super::file::{
-    BandsEntry, BootstrapEntry, DesignEntry, PosteriorEntry, PriorEntry, PriorNumbers, ProblemFile,
+    BandsEntry, BootstrapEntry, DesignEntry, ExperimentEntry, PosteriorEntry, PriorEntry,
+    PriorNumbers, ProblemFile,
 };
-use crate::diag::{Fault, suggest};
+use super::places::Places;
+use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::identify::problem::inference::{
     Adjustments, BootstrapSettings, Constraint, DesignSettings, Distribution, Inference,
     IntervalKind, ModelPredictions, PosteriorSettings, Prior, Resampling,
 };
 use crate::identify::problem::{Experiment, Free};
 use crate::registry::BAD_OPTION;
+use crate::source::Span;
 use crate::{bail, fault};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -28,14 +31,23 @@ pub(super) fn inference(
     file: &ProblemFile,
     experiments: &[Experiment],
     cancel: Option<&Arc<AtomicBool>>,
-) -> Result<Inference, Fault> {
+) -> Result<Inference, Diagnostic> {
     let (bands, band_variables) = match &file.bands {
         None | Some(BandsEntry::Requested(true)) => (true, Vec::new()),
         Some(BandsEntry::Requested(false)) => (false, Vec::new()),
         Some(BandsEntry::Variables(names)) => (true, names.clone()),
     };
-    band_variables.iter().try_for_each(|name| known("bands", name, experiments))?;
-    let design = file.design.as_ref().map(|entry| design(entry, experiments)).transpose()?;
+    for (number, name) in band_variables.iter().enumerate() {
+        let place = file.places.at(&["bands", &number.to_string()]);
+        known("bands", name, experiments).at(place)?;
+    }
+    let of = |name: &str| file.places.within(&[name]).cloned().unwrap_or_default();
+    let design = file.design.as_ref();
+    let design = design.map(|entry| self::design(entry, &of("design"), experiments)).transpose()?;
+    let bootstrap = file.bootstrap.as_ref();
+    let bootstrap = bootstrap.map(|entry| self::bootstrap(entry, &of("bootstrap"))).transpose()?;
+    let posterior = file.posterior.as_ref();
+    let posterior = posterior.map(|entry| self::posterior(entry, &of("posterior"))).transpose()?;
     let mut predict = ModelPredictions { experiments: experiments.to_vec() };
     for experiment in &mut predict.experiments {
         experiment.settings.cancel = cancel.cloned();
@@ -45,49 +57,66 @@ pub(super) fn inference(
         bands,
         band_variables,
         design,
-        bootstrap: file.bootstrap.as_ref().map(bootstrap).transpose()?,
-        posterior: file.posterior.as_ref().map(posterior).transpose()?,
+        bootstrap,
+        posterior,
         ..Inference::default()
     })
 }
 
-/// Priors, constraints and log-normal data.
+/// Priors, constraints, and the series with log-normal errors.
 ///
 /// # Errors
 ///
 /// What cannot be read.
-pub(super) fn adjustments(file: &ProblemFile, free: &[Free]) -> Result<Adjustments, Fault> {
+pub(super) fn adjustments(
+    file: &ProblemFile,
+    free: &[Free],
+    logarithmic: Vec<usize>,
+) -> Result<Adjustments, Diagnostic> {
     let mut priors = Vec::new();
     for (name, entry) in &file.parameters {
         let Some(prior) = &entry.prior else { continue };
-        let distribution = distribution(name, prior)?;
+        let place = file.places.at(&["parameters", name, "prior"]);
+        let distribution = distribution(name, prior).at(place)?;
         let of_experiments = format!("{name}@");
         let own = |free: &Free| free.name == *name || free.name.starts_with(&of_experiments);
         let places: Vec<usize> =
             free.iter().enumerate().filter(|(_, free)| own(free)).map(|(k, _)| k).collect();
         if places.is_empty() {
-            bail!(BAD_OPTION, "`{name}` has a prior but is not \
-                               estimated"; help: "add `min` and `max`");
+            let fault = fault!(BAD_OPTION, "`{name}` has a prior but is not estimated");
+            return Err(fault.help("add `min` and `max`").at(place));
         }
         priors.extend(places.into_iter().map(|parameter| Prior { parameter, distribution }));
     }
     let names: Vec<String> = free.iter().map(|free| free.name.clone()).collect();
-    let constraints =
-        file.constraints.iter().map(|text| super::constraint::constraint(text, &names));
-    let constraints = constraints.collect::<Result<Vec<Constraint>, Fault>>()?;
-    let used = file.experiment.iter().filter(|experiment| !experiment.validation);
-    let outputs = used.flat_map(|experiment| &experiment.outputs);
+    let constraints = file.constraints.iter().enumerate().map(|(number, text)| {
+        let place = file.places.at(&["constraints", &number.to_string()]);
+        super::constraint::constraint(text, &names).at(place)
+    });
+    let constraints = constraints.collect::<Result<Vec<Constraint>, Diagnostic>>()?;
+    Ok(Adjustments { priors, constraints, logarithmic })
+}
+
+/// The outputs of an experiment with log-normal errors, by their numbers among its series, and where that
+/// is written.
+///
+/// # Errors
+///
+/// Other kinds of errors.
+pub(super) fn logarithmic(entry: &ExperimentEntry) -> Result<Vec<(usize, Span)>, Diagnostic> {
     let mut logarithmic = Vec::new();
-    for (k, (name, output)) in outputs.enumerate() {
-        match output.entry().error.as_deref() {
+    for (number, (name, output)) in entry.all_outputs().enumerate() {
+        let place = entry.places.at(&["outputs", name, "error"]);
+        match output.error.as_deref() {
             None | Some("normal") => {}
-            Some("lognormal") => logarithmic.push(k),
+            Some("lognormal") => logarithmic.push((number, place)),
             Some(other) => {
-                bail!(BAD_OPTION, "the `error` of `{name}` is `{other}`"; help: "write \"normal\" or \"lognormal\"")
+                let fault = fault!(BAD_OPTION, "the `error` of `{name}` is `{other}`");
+                return Err(fault.help("write \"normal\" or \"lognormal\"").at(place));
             }
         }
     }
-    Ok(Adjustments { priors, constraints, logarithmic })
+    Ok(logarithmic)
 }
 
 fn distribution(name: &str, entry: &PriorEntry) -> Result<Distribution, Fault> {
@@ -131,18 +160,21 @@ pub(super) fn usual_posterior() -> PosteriorSettings {
     PosteriorSettings { samples: DRAWS }
 }
 
-fn bootstrap(entry: &BootstrapEntry) -> Result<BootstrapSettings, Fault> {
+fn bootstrap(entry: &BootstrapEntry, places: &Places) -> Result<BootstrapSettings, Diagnostic> {
+    let wrong = |entry: &str, fault: Fault| Err(fault.at(places.at(&[entry])));
     let usual = usual_bootstrap();
     let samples = entry.samples.unwrap_or(usual.samples);
     if !(100..=1_000_000).contains(&samples) {
-        bail!(BAD_OPTION, "`samples` of `bootstrap` is {samples}"; help: "write a number from 100 to 1000000; 95 % intervals need about 1000");
+        let fault = fault!(BAD_OPTION, "`samples` of `bootstrap` is {samples}"; help: "write a number from 100 to 1000000; 95 % intervals need about 1000");
+        return wrong("samples", fault);
     }
     let resampling = match entry.resampling.as_deref() {
         None | Some("residuals") => Resampling::Residuals,
         Some("parametric") => Resampling::Parametric,
         Some("cases") => Resampling::Cases,
         Some(other) => {
-            bail!(BAD_OPTION, "the `resampling` of `bootstrap` is `{other}`"; help: "write \"residuals\", \"parametric\" or \"cases\"")
+            let fault = fault!(BAD_OPTION, "the `resampling` of `bootstrap` is `{other}`"; help: "write \"residuals\", \"parametric\" or \"cases\"");
+            return wrong("resampling", fault);
         }
     };
     let interval = match entry.interval.as_deref() {
@@ -150,16 +182,18 @@ fn bootstrap(entry: &BootstrapEntry) -> Result<BootstrapSettings, Fault> {
         Some("percentile") => IntervalKind::Percentile,
         Some("basic") => IntervalKind::Basic,
         Some(other) => {
-            bail!(BAD_OPTION, "the `interval` of `bootstrap` is `{other}`"; help: "write \"bca\", \"percentile\" or \"basic\"")
+            let fault = fault!(BAD_OPTION, "the `interval` of `bootstrap` is `{other}`"; help: "write \"bca\", \"percentile\" or \"basic\"");
+            return wrong("interval", fault);
         }
     };
     Ok(BootstrapSettings { samples, resampling, interval })
 }
 
-fn posterior(entry: &PosteriorEntry) -> Result<PosteriorSettings, Fault> {
+fn posterior(entry: &PosteriorEntry, places: &Places) -> Result<PosteriorSettings, Diagnostic> {
     let samples = entry.samples.unwrap_or(DRAWS);
     if !(100..=10_000_000).contains(&samples) {
-        bail!(BAD_OPTION, "`samples` of `posterior` is {samples}"; help: "write a number from 100 to 10000000");
+        let fault = fault!(BAD_OPTION, "`samples` of `posterior` is {samples}"; help: "write a number from 100 to 10000000");
+        return Err(fault.at(places.at(&["samples"])));
     }
     Ok(PosteriorSettings { samples })
 }
@@ -169,21 +203,28 @@ pub(super) fn usual_design() -> DesignSettings {
     DesignSettings { points: POINTS, range: None, outputs: Vec::new() }
 }
 
-fn design(entry: &DesignEntry, experiments: &[Experiment]) -> Result<DesignSettings, Fault> {
+fn design(
+    entry: &DesignEntry,
+    places: &Places,
+    experiments: &[Experiment],
+) -> Result<DesignSettings, Diagnostic> {
     let points = entry.points.unwrap_or(POINTS);
     if !(1..=MOST_POINTS).contains(&points) {
-        bail!(BAD_OPTION, "`points` of `design` is {points}"; help: "write a number from 1 to {MOST_POINTS}");
+        let fault = fault!(BAD_OPTION, "`points` of `design` is {points}"; help: "write a number from 1 to {MOST_POINTS}");
+        return Err(fault.at(places.at(&["points"])));
     }
     if let Some([low, high]) =
         entry.range.filter(|[low, high]| !(low.is_finite() && low < high && high.is_finite()))
     {
-        bail!(BAD_OPTION, "the `range` of `design` goes from {low} to \
-                           {high}"; help: "write the lower limit first");
+        let fault = fault!(BAD_OPTION, "the `range` of `design` goes from {low} to {high}");
+        return Err(fault.help("write the lower limit first").at(places.at(&["range"])));
     }
     for (name, sigma) in &entry.outputs {
-        known("design", name, experiments)?;
+        let place = places.at(&["outputs", name]);
+        known("design", name, experiments).at(place)?;
         if !(sigma.is_finite() && *sigma > 0.0) {
-            bail!(BAD_OPTION, "the standard deviation of `{name}` in `design` is {sigma}"; help: "write a positive number");
+            let fault = fault!(BAD_OPTION, "the standard deviation of `{name}` in `design` is {sigma}"; help: "write a positive number");
+            return Err(fault.at(place));
         }
     }
     let outputs = entry.outputs.iter().map(|(name, sigma)| (name.clone(), *sigma)).collect();

@@ -143,7 +143,9 @@ pub(super) fn recorded(
     notes: &mut Notes,
 ) -> Result<(Vec<Recorded>, Vec<Undecided>), Diagnostic> {
     let own = match &entry.input_time {
-        Some(name) => Some(own_times(name, x.origin, table, notes).at(entry.places.data)?),
+        Some(name) => {
+            Some(own_times(name, x.origin, table, notes).at(entry.places.at(&["input_time"]))?)
+        }
         None => None,
     };
     let times = match (&entry.input_time, &own) {
@@ -152,7 +154,7 @@ pub(super) fn recorded(
     };
     let (mut all, mut undecided, mut torn) = (Vec::new(), Vec::new(), Vec::new());
     for (name, requested) in &entry.inputs {
-        let place = entry.places.column(name);
+        let place = entry.places.at(&["inputs", name]);
         let input = (name.as_str(), &requested.entry());
         let declared = declared(name).at(place)?;
         let followed = followed(input, table, times, &declared, notes).at(place)?;

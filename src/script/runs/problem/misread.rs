@@ -23,6 +23,10 @@ const COLUMNS: [f64; 3] = [-1.0, 1e3, 1e-3];
 /// Evaluations of each fit, at least and at most: 40 starts, of which some descend. Within these, all
 /// fits together take as many as the search has taken.
 const EVALUATIONS: [u64; 2] = [60, 200];
+/// Evaluations of each fit with two changes.
+const OF_A_PAIR: u64 = 20;
+/// Fits that explain less than this count the same, when pairs of changes are put into order.
+const WORST: f64 = -1.0;
 /// Steps of each simulation, and those for each row: an hour read as 150 days is given up.
 const STEPS: u64 = 10_000;
 const STEPS_PER_ROW: u64 = 20;
@@ -133,10 +137,18 @@ impl Changed {
         }
     }
 
+    fn is_of_times(&self) -> bool {
+        self.role == Role::X && self.variable == "time"
+    }
+
+    fn is_of_the_column_of(&self, other: &Changed) -> bool {
+        self.role == other.role && self.variable == other.variable
+    }
+
     fn words(&self) -> String {
         let Changed { variable, column, factor, .. } = self;
         let what = match self.role {
-            Role::X if variable == "time" => {
+            Role::X if self.is_of_times() => {
                 let how = TIMES.iter().find(|own| own.0 == *factor).map_or("", |own| own.1);
                 return format!("the times `{column}` {how}");
             }
@@ -151,44 +163,114 @@ impl Changed {
     }
 }
 
-/// Fits columns that are read otherwise, where they may be read wrongly.
+/// Fits columns that are read otherwise, where they may be read wrongly: one at a time, and two at once
+/// where none of these explains the data.
 ///
 /// # Errors
 ///
 /// Those of the simulators' maker.
 fn try_readings(
     session: &mut Session,
-    (run, solution): (&Run, &mut Solution),
+    about: (&Run, &mut Solution),
     changes: &[Changed],
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if !solution.is_doubtful() || session.world.interrupted() {
+    if !about.1.is_doubtful() || session.world.interrupted() {
         return Ok(());
     }
     let [fewest, most] = EVALUATIONS;
-    let each = solution.effort.evaluations / changes.len().max(1) as u64;
-    let rows = solution.series.iter().map(|series| series.points.len() as u64).max();
-    let most_steps = STEPS + STEPS_PER_ROW * rows.unwrap_or(0);
-    let estimate: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
-    let mut readings = Vec::new();
-    run.evaluation.show("columns read otherwise");
+    let each = about.1.effort.evaluations / changes.len().max(1) as u64;
+    let mut fits = ShortFits { session, about, again, readings: Vec::new(), simulations: 0 };
+    fits.about.0.evaluation.show("columns read otherwise");
     for changed in changes {
-        let change = |file: &mut ProblemFile| changed.apply(file, most_steps);
+        if !fits.fit(&[changed], each.clamp(fewest, most))? {
+            return Ok(());
+        }
+    }
+    if !fits.about.1.is_explained_by(&fits.readings) {
+        fits.about.0.evaluation.show("two columns read otherwise");
+        if !fits.fit_pairs(changes)? {
+            return Ok(());
+        }
+    }
+    let ShortFits { about: (_, solution), readings, .. } = fits;
+    solution.add_readings(&readings);
+    Ok(())
+}
+
+/// Short fits to columns that are read otherwise.
+struct ShortFits<'a, 'm> {
+    session: &'a mut Session,
+    about: (&'a Run, &'a mut Solution),
+    again: &'a mut Again<'m>,
+    readings: Vec<Reading>,
+    /// What they took.
+    simulations: u64,
+}
+
+impl ShortFits<'_, '_> {
+    /// Fits with these changes at once; `false` where the user stops the run.
+    fn fit(&mut self, changes: &[&Changed], evaluations: u64) -> Result<bool, Fault> {
+        let (_, solution) = &mut self.about;
+        let rows = solution.series.iter().map(|series| series.points.len() as u64).max();
+        let most_steps = STEPS + STEPS_PER_ROW * rows.unwrap_or(0);
+        let change =
+            |file: &mut ProblemFile| changes.iter().for_each(|own| own.apply(file, most_steps));
+        let words = changes.iter().map(|own| own.words()).collect::<Vec<_>>().join(" and ");
         // A column that cannot be read so is no explanation.
-        let Ok(other) = again(session, Change::Entries(&change)) else { continue };
-        let processors = session.world.processors();
-        let flag = session.world.interrupt_flag();
-        let about = (each.clamp(fewest, most), &estimate[..]);
-        let (r_squared, simulations) = short_fit(other.problem, about, &processors, flag)?;
+        let Ok(other) = (self.again)(self.session, Change::Entries(&change)) else {
+            self.readings.push(Reading { words, r_squared: None });
+            return Ok(true);
+        };
+        let estimate: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
+        let (processors, flag) =
+            (self.session.world.processors(), self.session.world.interrupt_flag());
+        let (r_squared, simulations) =
+            short_fit(other.problem, (evaluations, &estimate), &processors, flag)?;
+        self.simulations += simulations;
         solution.effort.simulations_for_statistics += simulations;
-        if session.world.interrupted() {
+        if self.session.world.interrupted() {
             let sentence =
                 "Not all other readings of the columns were tried: the run was stopped before.";
             solution.findings.push(Finding::new(FindingKind::Missing, sentence));
-            break;
+            return Ok(false);
         }
-        readings.push(Reading { words: changed.words(), r_squared });
+        self.readings.push(Reading { words, r_squared });
+        Ok(true)
     }
-    solution.add_readings(&readings);
-    Ok(())
+
+    /// Fits with two changes at once, those with another unit of the times first, and then those that
+    /// explained more alone, until they have taken as many simulations as the search. `false` where the user
+    /// stops the run.
+    fn fit_pairs(&mut self, changes: &[Changed]) -> Result<bool, Fault> {
+        let alone: Vec<f64> = std::mem::take(&mut self.readings)
+            .iter()
+            .map(|own| own.r_squared.map_or(WORST, |found| found.max(WORST)))
+            .collect();
+        let numbers = 0..changes.len();
+        let mut pairs: Vec<[usize; 2]> = numbers
+            .clone()
+            .flat_map(|one| numbers.clone().skip(one + 1).map(move |other| [one, other]))
+            .filter(|[one, other]| !changes[*one].is_of_the_column_of(&changes[*other]))
+            .collect();
+        let is_of_times = |pair: &[usize; 2]| pair.iter().any(|own| changes[*own].is_of_times());
+        pairs.sort_by(|a, b| {
+            let explained = |pair: &[usize; 2]| alone[pair[0]] + alone[pair[1]];
+            let by_time = is_of_times(b).cmp(&is_of_times(a));
+            by_time.then(explained(b).total_cmp(&explained(a))).then(a.cmp(b))
+        });
+        let budget = self.simulations + self.about.1.effort.evaluations;
+        for [one, other] in pairs {
+            if self.simulations + OF_A_PAIR > budget {
+                break;
+            }
+            if !self.fit(&[&changes[one], &changes[other]], OF_A_PAIR)? {
+                return Ok(false);
+            }
+            if self.about.1.is_explained_by(&self.readings) {
+                break;
+            }
+        }
+        Ok(true)
+    }
 }

@@ -141,7 +141,8 @@ pub fn solve(
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
     let source = session.sources.add(path.display().to_string(), text.as_str());
-    let file = file::read(source, &text).map_err(|error| vec![error])?;
+    let file = file::read(source, &text)
+        .map_err(|error| vec![refusal::with_unread_columns(session, path, &text, error)])?;
     solve_stated(session, path, file, options)
 }
 
@@ -173,11 +174,12 @@ fn solve_stated(
         (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
     if let Some(count) = file.searches.filter(|count| !(1..=searches::MOST).contains(count)) {
         let most = searches::MOST;
-        return Err(one(
-            fault!(BAD_OPTION, "`searches` is {count}"; help: "write a number from 1 to {most}"),
-        ));
+        let fault =
+            fault!(BAD_OPTION, "`searches` is {count}"; help: "write a number from 1 to {most}");
+        return Err(vec![fault.at(file.places.at(&["searches"]))]);
     }
     let options = RunOptions { searches: options.searches.or(file.searches), ..options.clone() };
+    let method = file.places.at(&["method"]);
     let mut again = |session: &mut Session, change: Change<'_>| {
         // What is to be said of the problem has been said.
         let is_quiet = std::mem::replace(&mut session.options.quiet, true);
@@ -203,12 +205,24 @@ fn solve_stated(
     if let Some(unit) = unit {
         note_messages(session, &unit);
     }
-    if solved.is_err() && why.is_some() {
+    if solved.is_err() && matches!(why, Some(Cause::Failures(_))) {
         // Nothing was simulated: there is nothing to continue.
         let folder = session.world.output_dir().join(&options.folder);
         discard(session, &folder.join(JOURNAL));
     }
-    solved.map_err(|fault| why.map_or_else(|| one(fault), |why| vec![why]))
+    solved.map_err(|fault| match why {
+        Some(Cause::Failures(error)) => vec![error],
+        Some(Cause::Method) => vec![fault.at(method)],
+        None => one(fault),
+    })
+}
+
+/// Why a run has no result, where that has a place.
+enum Cause {
+    /// The method cannot begin.
+    Method,
+    /// All simulations failed.
+    Failures(Diagnostic),
 }
 
 /// The problem, with what the options ask beyond its file.
@@ -239,12 +253,12 @@ fn solve_built(
     (path, built): (&Path, Built),
     (options, every): (&RunOptions, (Option<u64>, f64)),
     again: &mut searches::Again<'_>,
-    why: &mut Option<Diagnostic>,
+    why: &mut Option<Cause>,
 ) -> Result<Solution, Fault> {
     let Built { problem, experiments, validation, origins, notes, calibration, doubts, unit: _ } =
         built;
     let folder = session.world.output_dir().join(&options.folder);
-    let mut run = prepared(session, problem, options)?;
+    let mut run = prepared(session, problem, options, why)?;
     let importance = analysed(session, &run, &folder, options)?;
     let files = Journalled { folder: &folder, origins: &origins, every };
     searches::refuse_leftovers(session, &folder, options)?;
@@ -259,7 +273,7 @@ fn solve_built(
     let paths = (path, checkpoint.path(), folder.as_path());
     let keep =
         |session: &mut Session, run: &Run| shards::keep(session, run, paths, (&origins, options));
-    *why = failing::none_simulated(&run, &experiments);
+    *why = failing::none_simulated(&run, &experiments).map(Cause::Failures);
     let held_out = validated(&run, &validation, hurry(session))?;
     let mut solution = match Solution::of_search(&run, &ending.reason, held_out).map(with) {
         // The searches of this shard count, whatever became of the first one.
@@ -300,13 +314,16 @@ fn prepared(
     session: &mut Session,
     problem: solving::Problem,
     options: &RunOptions,
+    why: &mut Option<Cause>,
 ) -> Result<Run, Fault> {
     if let Some(file) = options.watch.as_ref().filter(|file| !session.world.exists(file)) {
         let name = file.display();
         session
             .print(&format!("there is no file `{name}` yet: its settings apply once it exists\n"));
     }
+    *why = Some(Cause::Method);
     let mut run = Run::on(problem, &session.world.processors())?;
+    *why = None;
     run.evaluation.cancel_by(session.world.interrupt_flag());
     run.evaluation.parts = options.division.parts();
     session.note_idle_ranks(run.evaluation.alone());

@@ -30,12 +30,14 @@ pub(super) fn method(
 ) -> Result<Named, Vec<Diagnostic>> {
     let requested = file.method.name.as_deref().unwrap_or(usual);
     let entry = registry::find("method", METHODS, requested);
-    let entry = *entry.as_ref().map_err(|fault| vec![fault.clone().at(Span::NONE)])?;
+    let entry = *entry
+        .as_ref()
+        .map_err(|fault| vec![fault.clone().at(file.places.at(&["method", "name"]))])?;
     let mut options = Options::default();
     file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
     let mut chosen = Vec::new();
     for (kind, entry) in file.method.operators() {
-        let place = file.places.operators.get(kind).copied().unwrap_or(Span::NONE);
+        let place = file.places.at(&["method", kind]);
         match entry {
             OperatorEntry::Frequency(value)
                 if operators::kind(kind).is_some_and(|kind| kind.frequency.is_some()) =>
@@ -46,7 +48,8 @@ pub(super) fn method(
         }
     }
     let one = |fault: Fault, span: Span| vec![fault.at(span)];
-    let mut method = made(entry, &options).map_err(|fault| one(fault, Span::NONE))?;
+    let mut method =
+        made(entry, &options).map_err(|fault| one(fault, file.places.at(&["method"])))?;
     // One after the other, so that what is wrong has a place.
     for (kind, place, choice) in chosen {
         if !registry::choices(entry).contains(&kind) {

@@ -135,7 +135,7 @@ impl Setting<'_> {
     /// The expression of a tied parameter.
     fn tied(&self, name: &str, text: &str) -> Result<Expression, Diagnostic> {
         let places = &self.file.places;
-        let read = enclosing_class::expression(text, places.tied.get(name).copied());
+        let read = enclosing_class::expression(text, places.text(&["parameters", name, "tied"]));
         let mut read = read.map_err(|error| error.or_at(places.parameter(name)))?;
         QuotedNames.expression(&mut read);
         Ok(read)
@@ -145,7 +145,7 @@ impl Setting<'_> {
     fn values(&self, enclosing: &mut EnclosingClass) -> Result<(), Diagnostic> {
         let (entry, parameters) = (self.entry, &self.file.parameters);
         for (name, value) in &entry.set.values {
-            let place = entry.places.value(name);
+            let place = entry.places.at(&["set", name]);
             if parameters.contains_key(name) {
                 let experiment = self.label;
                 let fault = fault!(
@@ -159,7 +159,7 @@ impl Setting<'_> {
             enclosing.bind(name, value, place);
         }
         for (name, value) in &entry.start {
-            let place = entry.places.value(name);
+            let place = entry.places.at(&["start", name]);
             if parameters.get(name).is_some_and(|parameter| parameter.initial) {
                 let fault = fault!(
                     BAD_OPTION,
@@ -232,7 +232,8 @@ pub(super) fn check_taken(
         let value = parameter.fixed.as_ref().filter(|_| is_value)?;
         Some((name, value, file.places.parameter(name)))
     });
-    let set = entry.set.values.iter().map(|(name, value)| (name, value, entry.places.value(name)));
+    let set =
+        entry.set.values.iter().map(|(name, value)| (name, value, entry.places.at(&["set", name])));
     for (name, value, place) in fixed.chain(set) {
         let requested = match value {
             ValueEntry::Number(number) => *number,
@@ -348,7 +349,7 @@ pub(super) fn check_initial(
 ) -> Result<(), Vec<Diagnostic>> {
     let estimated = file.parameters.iter().filter(|(_, parameter)| parameter.initial);
     let estimated = estimated.map(|(name, _)| (name, file.places.parameter(name)));
-    let set = entry.start.keys().map(|name| (name, entry.places.value(name)));
+    let set = entry.start.keys().map(|name| (name, entry.places.at(&["start", name])));
     let states: Vec<String> = model.state_names().map(ToString::to_string).collect();
     let is_other = |name: &String| {
         let array = || name.strip_suffix(']').and_then(|inner| inner.rsplit_once('['));

@@ -1,176 +1,106 @@
-//! Where the entries of a problem's file are written. Read apart from the entries, because what is
-//! collected by `flatten` or chosen by `untagged` has lost its places.
+//! Where the entries of a problem's file are written. They are read apart from the entries, because
+//! what is collected by `flatten` or chosen by its form has lost its places.
 
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{IgnoredAny, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
-use std::fmt;
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
-/// The places of a file.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Places {
-    /// The class of the model, without its quotation marks.
-    pub model: Option<Span>,
-    /// Expressions of tied parameters, without their quotation marks, by the names of these.
-    pub tied: IndexMap<String, Span>,
-    parameters: IndexMap<String, Span>,
-    /// The operators of the method by their kinds.
-    pub operators: IndexMap<&'static str, Span>,
-    /// The experiments, in their order.
-    pub experiments: Vec<ExperimentPlaces>,
-}
-
-/// The places of an experiment.
+/// The place of an entry, and those of the entries within it. The elements of an array are named by their
+/// numbers, from 0.
 #[derive(Debug, Clone)]
-pub(super) struct ExperimentPlaces {
-    /// The name of its file.
-    pub data: Span,
-    /// Its X.
-    pub x: Span,
-    columns: IndexMap<String, Span>,
-    values: IndexMap<String, Span>,
+pub(super) struct Places {
+    own: Span,
+    /// The text without its quotation marks. In escapes it would have other places than what it means.
+    text: Option<Span>,
+    within: IndexMap<String, Places>,
 }
 
-impl Default for ExperimentPlaces {
-    fn default() -> ExperimentPlaces {
-        let (columns, values) = (IndexMap::new(), IndexMap::new());
-        ExperimentPlaces { data: Span::NONE, x: Span::NONE, columns, values }
-    }
-}
-
-impl ExperimentPlaces {
-    /// The output or input of this name.
-    pub(super) fn column(&self, name: &str) -> Span {
-        self.columns.get(name).copied().unwrap_or(Span::NONE)
-    }
-
-    /// The parameter or initial value of this name that the experiment sets.
-    pub(super) fn value(&self, name: &str) -> Span {
-        self.values.get(name).copied().unwrap_or(Span::NONE)
+impl Default for Places {
+    fn default() -> Places {
+        Places { own: Span::NONE, text: None, within: IndexMap::new() }
     }
 }
 
 impl Places {
+    /// The places of a text; none where it is not TOML.
+    pub(super) fn of(source: SourceId, text: &str) -> Places {
+        let file = DeTable::parse(text).map(Spanned::into_inner).unwrap_or_default();
+        let span = |from: usize, to: usize| Span::new(source, from, to);
+        Places { within: tables(&file, text, &span), ..Places::default() }
+    }
+
+    /// The entry to which these names lead, or the innermost one on the way that there is.
+    pub(super) fn at(&self, names: &[&str]) -> Span {
+        let next =
+            names.split_first().and_then(|(name, rest)| Some((self.within.get(*name)?, rest)));
+        next.map_or(self.own, |(entry, rest)| entry.at(rest))
+    }
+
+    /// The text of the entry to which these names lead.
+    pub(super) fn text(&self, names: &[&str]) -> Option<Span> {
+        self.within(names)?.text
+    }
+
+    /// The entry to which these names lead, with all within it.
+    pub(super) fn within(&self, names: &[&str]) -> Option<&Places> {
+        names.iter().try_fold(self, |entry, name| entry.within.get(*name))
+    }
+
     /// The parameter of this name.
     pub(super) fn parameter(&self, name: &str) -> Span {
-        self.parameters.get(name).copied().unwrap_or(Span::NONE)
+        self.at(&["parameters", name])
     }
 }
 
-type Place = Option<Spanned<IgnoredAny>>;
-type Named = IndexMap<String, Spanned<IgnoredAny>>;
+type MakeSpan<'a> = &'a dyn Fn(usize, usize) -> Span;
 
-#[derive(Debug, Default, Deserialize)]
-struct File {
-    model: Place,
-    #[serde(default)]
-    parameters: IndexMap<String, Spanned<Parameter>>,
-    #[serde(default)]
-    method: Method,
-    #[serde(default)]
-    experiment: Vec<Experiment>,
+fn tables(table: &DeTable<'_>, text: &str, span: MakeSpan<'_>) -> IndexMap<String, Places> {
+    let one = |(name, value): (&Spanned<_>, _)| {
+        (AsRef::<str>::as_ref(name.get_ref()).to_owned(), entry(value, text, span))
+    };
+    table.iter().map(one).collect()
 }
 
-#[derive(Debug, Default, Deserialize)]
-struct Parameter {
-    tied: Place,
-}
-
-#[derive(Debug, Default, Deserialize)]
-struct Method {
-    sampling: Place,
-    selection: Place,
-    crossover: Place,
-    mutation: Place,
-    survival: Place,
-}
-
-#[derive(Debug, Default, Deserialize)]
-struct Experiment {
-    data: Place,
-    x: Place,
-    #[serde(default)]
-    outputs: Named,
-    #[serde(default)]
-    inputs: Named,
-    #[serde(default)]
-    set: Set,
-    #[serde(default)]
-    start: Named,
-}
-
-/// The values of a table; none where a file is named.
-#[derive(Debug, Default)]
-struct Set(Named);
-
-impl<'de> Deserialize<'de> for Set {
-    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Set, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Set;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a table, or the name of a file")
-            }
-
-            fn visit_str<E>(self, _: &str) -> Result<Set, E> {
-                Ok(Set::default())
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<Set, A::Error> {
-                Named::deserialize(MapAccessDeserializer::new(entries)).map(Set)
-            }
+fn entry(value: &Spanned<DeValue<'_>>, text: &str, span: MakeSpan<'_>) -> Places {
+    let range = value.span();
+    let own = span(range.start, range.end);
+    match value.get_ref() {
+        DeValue::Table(table) => Places { own, text: None, within: tables(table, text, span) },
+        DeValue::Array(values) => {
+            let elements = values.iter().enumerate();
+            let within = elements.map(|(k, value)| (k.to_string(), entry(value, text, span)));
+            Places { own, text: None, within: within.collect() }
         }
-        reader.deserialize_any(Either)
+        DeValue::String(_) => {
+            let inner = range.end.checked_sub(1).and_then(|end| text.get(range.start + 1..end));
+            let is_plain = |inner: &&str| !inner.contains(['\\', '\n', '"', '\'']);
+            let inner = inner.filter(is_plain).map(|_| span(range.start + 1, range.end - 1));
+            Places { own, text: inner, within: IndexMap::new() }
+        }
+        _ => Places { own, ..Places::default() },
     }
 }
 
-/// The places in a text that has been read as a problem: what could be read once can be read again.
-pub(super) fn places(source: SourceId, text: &str) -> Places {
-    let File { model, parameters, method, experiment } = toml::from_str(text).unwrap_or_default();
-    let of_range = |range: std::ops::Range<usize>| Span::new(source, range.start, range.end);
-    let span = |place: &Spanned<IgnoredAny>| of_range(place.span());
-    let of = |place: &Place| place.as_ref().map_or(Span::NONE, span);
-    // Text in escapes would have other places than what it stands for.
-    let quoted = |place: &Place| {
-        let range = place.as_ref()?.span();
-        let inner = text.get(range.start + 1..range.end.checked_sub(1)?)?;
-        let is_plain = !inner.contains(['\\', '\n', '"', '\'']);
-        is_plain.then(|| of_range(range.start + 1..range.end - 1))
-    };
-    let kinds = [
-        ("sampling", &method.sampling),
-        ("selection", &method.selection),
-        ("crossover", &method.crossover),
-        ("mutation", &method.mutation),
-        ("survival", &method.survival),
-    ];
-    let operators =
-        kinds.into_iter().filter_map(|(kind, place)| Some((kind, span(place.as_ref()?))));
-    let all = |first: &Named, second: &Named| {
-        let both = first.iter().chain(second);
-        both.map(|(name, place)| (name.clone(), span(place))).collect()
-    };
-    let experiments = experiment.iter().map(|experiment| ExperimentPlaces {
-        data: of(&experiment.data),
-        x: of(&experiment.x),
-        columns: all(&experiment.outputs, &experiment.inputs),
-        values: all(&experiment.set.0, &experiment.start),
-    });
-    let tied = parameters
-        .iter()
-        .filter_map(|(name, one)| Some((name.clone(), quoted(&one.get_ref().tied)?)));
-    Places {
-        model: quoted(&model),
-        tied: tied.collect(),
-        parameters: parameters
-            .iter()
-            .map(|(name, one)| (name.clone(), of_range(one.span())))
-            .collect(),
-        operators: operators.collect(),
-        experiments: experiments.collect(),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_has_the_place_of_what_it_is_missing_in() {
+        let text = "model = \"A\"\n[parameters]\nk = { min = 1 }\n[[experiment]]\ndata = 'd'\n\
+                    outputs.V = [\"a\", \"b\"]\n";
+        let places = Places::of(SourceId::NONE, text);
+        let at = |names: &[&str]| {
+            let span = places.at(names);
+            &text[span.start as usize..span.end as usize]
+        };
+        assert_eq!(at(&["parameters", "k", "min"]), "1");
+        assert_eq!(at(&["parameters", "k", "max"]), "{ min = 1 }");
+        assert_eq!(at(&["experiment", "0", "data"]), "'d'");
+        assert_eq!(at(&["experiment", "0", "outputs", "V", "1"]), "\"b\"");
+        assert_eq!(at(&["experiment", "0", "x"]), "[[experiment]]");
+        assert_eq!(places.at(&["seed"]), Span::NONE);
+        assert_eq!(places.text(&["model"]).map(|span| span.end - span.start), Some(1));
     }
 }

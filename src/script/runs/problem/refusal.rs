@@ -1,10 +1,14 @@
 //! What is said of a problem file that is not TOML, or has entries that a problem does not have: the
 //! cause in the words of the file, and the remedy for what people write by habit.
 
+use crate::Session;
+use crate::access::faults::escape_help;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::registry::BAD_OPTION;
+use crate::results;
 use crate::source::{SourceId, Span};
+use std::path::Path;
 use toml::{Table, Value};
 
 /// Entries that people put a level too high, and where they belong.
@@ -53,7 +57,7 @@ pub(super) fn printable(table: &Table) -> Result<(), Fault> {
             "the text {text:?} contains the control character U+{:04X}",
             u32::from(c)
         )
-        .help("remove it")),
+        .help(escape_help(Path::new(text)).unwrap_or_else(|| "remove it".to_owned()))),
         None => Ok(()),
     };
     let mut open: Vec<&Value> = Vec::new();
@@ -72,6 +76,35 @@ pub(super) fn printable(table: &Table) -> Result<(), Fault> {
         }
     }
 }
+
+/// The error with the columns of the data that cannot be read, where outputs or their X are missing: a draft
+/// leaves such columns out.
+pub(super) fn with_unread_columns(
+    session: &Session,
+    path: &Path,
+    text: &str,
+    error: Diagnostic,
+) -> Diagnostic {
+    if !error.message.contains(MISSING_OUTPUTS) {
+        return error;
+    }
+    let file: Table = text.parse().unwrap_or_default();
+    let experiments = file.get("experiment").and_then(Value::as_array);
+    let without = |own: &&Value| own.get("outputs").is_none();
+    let data = experiments.into_iter().flatten().filter(without);
+    let mut reasons = data.filter_map(|own| {
+        let data = path.parent()?.join(own.get("data")?.as_str()?);
+        let bytes = session.read_bytes(&data).ok()?;
+        results::read_data(&data.to_string_lossy(), &bytes).ok()?.unread_columns()
+    });
+    match reasons.next() {
+        Some(reason) => error.help(reason),
+        None => error,
+    }
+}
+
+/// What is said where an experiment has no outputs.
+const MISSING_OUTPUTS: &str = "the entry `outputs` is missing";
 
 /// What the parser says where a text or a key in quotation marks should end.
 const EXPECTED_QUOTE: &str = "literal string, expected `'`";

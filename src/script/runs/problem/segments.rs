@@ -89,7 +89,7 @@ impl Segment {
                 help: "remove it there, and add `{own} = {{ min = …, max = …, initial = true }}` to \
                        `[parameters]`"
             );
-            return Err(fault.at(entry.places.value(own)));
+            return Err(fault.at(entry.places.at(&["start", own])));
         }
         let states: Vec<&str> = model.state_names().map(|state| &**state).collect();
         let unknown: Vec<&str> =
@@ -104,7 +104,7 @@ impl Segment {
             help: "estimate them: add a line such as `{} = {{ min = …, max = …, initial = true }}` \
                    for each to `[parameters]`; every part has its own value", unknown[0]
         );
-        Err(fault.at(entry.places.data))
+        Err(fault.at(entry.places.at(&["segments"])))
     }
 }
 

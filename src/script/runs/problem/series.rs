@@ -5,7 +5,6 @@ use super::data::{self, Measured, Notes};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
 use super::{sigma, time_axis};
-use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
 use crate::identify::problem::{Observation, Series, Sigma};
@@ -13,6 +12,7 @@ use crate::mat::{Column, MatFile};
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::units::in_words;
+use crate::{bail, fault};
 
 /// What the outputs of an experiment are compared over.
 pub(super) struct Comparison<'a> {
@@ -22,6 +22,8 @@ pub(super) struct Comparison<'a> {
     pub table: &'a MatFile,
     pub model: &'a dyn Model,
     pub x_name: &'a str,
+    /// The column of X.
+    pub x_column: &'a str,
     /// X in the unit of the model; NaN where it is missing.
     pub x: Vec<f64>,
     /// When the simulation begins.
@@ -51,10 +53,15 @@ impl Comparison<'_> {
         observed: &[String],
         notes: &mut Notes,
     ) -> Result<(Vec<Observation>, Vec<Series>), Diagnostic> {
+        if let Some(weight) = self.entry.weight.filter(|weight| !is_weight(*weight)) {
+            let fault = fault!(BAD_OPTION, "the weight of {} is {weight}", self.experiment);
+            let fault = fault.help("write a positive number");
+            return Err(fault.at(self.entry.places.at(&["weight"])));
+        }
         let (mut observations, mut series) = (Vec::new(), Vec::new());
         for ((y_name, requested), observed) in self.entry.all_outputs().zip(observed) {
             let one = self.output(y_name, &requested, notes);
-            let one = one.at(self.entry.places.column(y_name))?;
+            let one = one.at(self.entry.places.at(&["outputs", y_name]))?;
             observations.push(Observation { y_name: observed.clone(), x: one.x.clone() });
             series.push(one);
         }
@@ -111,6 +118,7 @@ impl Comparison<'_> {
             weight,
             sigma,
             column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
+            x_column: self.x_column.to_owned(),
             rows: rows.iter().map(|row| first_row + row).collect(),
             missing: missing.iter().map(|row| first_row + row).collect(),
         })
@@ -194,11 +202,15 @@ impl Comparison<'_> {
     fn weight(&self, y_name: &str, requested: &ColumnEntry) -> Result<f64, Fault> {
         let weight =
             requested.weight.map_or(1.0, |weight| weight.0) * self.entry.weight.unwrap_or(1.0);
-        if !(weight.is_finite() && weight > 0.0) {
+        if !is_weight(weight) {
             bail!(BAD_OPTION, "the weight of `{y_name}` in {} is {weight}", self.experiment);
         }
         Ok(weight)
     }
+}
+
+fn is_weight(weight: f64) -> bool {
+    weight.is_finite() && weight > 0.0
 }
 
 /// Temperatures whose file gives no unit and whose values are usual in the other one, of a variable in

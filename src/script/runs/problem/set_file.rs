@@ -11,7 +11,6 @@ use crate::fmi::parameter_set::{Parameter, ParameterValue};
 use crate::identify::problem::Origins;
 use crate::models::variable_unit::VariableUnit;
 use crate::models::{parameter_sets, simulation};
-use crate::source::Span;
 use std::path::Path;
 
 /// What knows the units of parameters.
@@ -34,8 +33,9 @@ pub(super) fn read(
     (notes, origins): (&mut Notes, &mut Origins),
 ) -> Result<(), Vec<Diagnostic>> {
     let mut declarations = unit.map_or(Declarations::Model(None), Declarations::Unit);
-    let one = |fault: Fault| vec![fault.at(Span::NONE)];
     for entry in &mut file.experiment {
+        let place = entry.places.at(&["set"]);
+        let one = |fault: Fault| vec![fault.at(place)];
         let Some(own) = entry.set.file.clone() else { continue };
         let path = folder.join(&own);
         let set = parameter_sets::read(session, &path).map_err(one)?;

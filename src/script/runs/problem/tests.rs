@@ -4,6 +4,7 @@ use super::*;
 use crate::value::FromValue as _;
 use crate::world::{Files as _, MemoryWorld};
 
+mod entries;
 mod inference;
 mod stopping;
 mod values;

@@ -6,7 +6,7 @@ use super::file::ColumnEntry;
 use crate::bail;
 use crate::diag::Fault;
 use crate::identify::significant;
-use crate::mat::{Calendar, Column, MatFile, calendar};
+use crate::mat::{Calendar, Column, MatFile, Version, calendar};
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::units::{Unit, written};
@@ -85,8 +85,7 @@ pub(super) fn origin(
     Ok(Some(Origin { calendar, number: first }))
 }
 
-/// Says that a column of times without a unit is read as seconds, unless its name is that of the variable
-/// `time` or its symbol, which are in seconds.
+/// Says that a column of times without a unit is read as seconds; results of simulations are in seconds.
 pub(super) fn note_unit(
     name: &str,
     column: &Column,
@@ -94,7 +93,7 @@ pub(super) fn note_unit(
     (table, notes): (&MatFile, &mut Notes),
 ) {
     let has_unit = entry.unit.is_some() || entry.factor.is_some() || column.about.unit.is_some();
-    if !has_unit && table.is_table() && !matches!(name, "time" | "t") {
+    if !has_unit && table.is_table() && table.version != Version::Results {
         notes.about(table, [format!(
             "`{name}` has no unit, and is read in seconds; for minutes, write `x = {{ variable = \
              \"time\", column = \"{name}\", unit = \"min\" }}`"
@@ -162,6 +161,24 @@ pub(super) fn truncated(
         format!(
             "time stamps of `{name}` have several rows each, between which the input `{input}` changes: \
              these are not replicates, but times of a clock without seconds; write them with seconds"
+        )
+    })
+}
+
+/// A sentence about time stamps in whole minutes of which most have several rows, where no input shows
+/// whether these are replicates.
+pub(super) fn without_seconds(name: &str, times: &[f64]) -> Option<String> {
+    const MINUTE: f64 = 60.0;
+    let known: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
+    let stamps: Vec<&[f64]> = known.chunk_by(|a, b| a == b).collect();
+    let several = stamps.iter().filter(|stamp| stamp.len() > 1).count();
+    let is_minute = |time: &f64| time.rem_euclid(MINUTE) == 0.0;
+    let is_clock = stamps.len() > 1 && 2 * several > stamps.len() && known.iter().all(is_minute);
+    let rows = stamps.iter().map(|stamp| stamp.len()).max()?;
+    is_clock.then(|| {
+        format!(
+            "time stamps of `{name}` are whole minutes with up to {rows} rows each, which count as \
+             measurements at one time; if the clock has no seconds, write the times with seconds"
         )
     })
 }
@@ -247,7 +264,7 @@ mod tests {
         let found = noted("Time,V\n0,1\n1,2\n", "Time").unwrap();
         assert!(found.contains("`Time` has no unit, and is read in seconds"), "{found}");
         assert_eq!(noted("Time [min],V\n0,1\n1,2\n", "Time"), None);
-        assert_eq!(noted("time,V\n0,1\n1,2\n", "time"), None);
+        assert!(noted("time,V\n0,1\n1,2\n", "time").is_some());
     }
 
     #[test]
@@ -258,6 +275,10 @@ mod tests {
         assert!(found.contains("the input `I` changes"), "{found}");
         let same = ("I", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0][..]);
         assert_eq!(truncated("Datum", &minutes, same), None, "replicates");
+        let found = without_seconds("Datum", &minutes).unwrap();
+        assert!(found.contains("up to 3 rows each"), "{found}");
+        assert_eq!(without_seconds("t", &[0.0, 60.0, 60.0, 120.0, 180.0]), None, "an event");
+        assert_eq!(without_seconds("t", &[0.0, 0.0, 15.0, 15.0]), None, "seconds");
         let event = ("I", &[0.0, 0.0, 1.0, 1.0][..]);
         assert_eq!(truncated("t", &[0.0, 1.0, 1.0, 2.0], event), None, "an event");
     }

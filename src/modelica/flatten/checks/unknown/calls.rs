@@ -19,6 +19,7 @@ use crate::syntax::ast::{
     Arguments, CausalityPrefix, ClassSpecifier, ComponentReference, NamedArgument, Restriction,
     Visibility,
 };
+use crate::syntax::foreign;
 
 /// The operators of overconstrained connections are functions of this name (MLS §9.4).
 const CONNECTIONS: &str = "Connections";
@@ -46,7 +47,9 @@ impl<'a> NameCheck<'a, '_> {
             self.errors.extend(unknown_component(called, &arguments.named));
         } else if let Some(inputs) = Inputs::of(called) {
             let count = arguments.positional.len();
+            let commas = foreign::decimal_commas(&arguments.positional);
             let wrong = inputs.excess(count, function.span);
+            let wrong = wrong.map(|error| commas.into_iter().fold(error, Diagnostic::help));
             let wrong = wrong.or_else(|| inputs.unknown(&arguments.named));
             let wrong = wrong.or_else(|| inputs.missing(count, &arguments.named, function.span));
             self.errors.extend(wrong);

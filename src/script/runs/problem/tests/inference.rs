@@ -285,3 +285,20 @@ fn what_a_model_does_not_have_cannot_be_inferred() {
     assert!(refused("[bootstrap]\nresampling = \"all\"").contains("`all`"));
     assert!(refused("[posterior]\nsamples = 3").contains("`samples` of `posterior` is 3"));
 }
+
+/// Replicates are series of their own: the log-normal one is the third.
+#[test]
+fn log_normal_errors_belong_to_their_output_beside_replicates() {
+    let problem = "model = \"Free\"\nfiles = [\"tank.mo\"]\n[parameters]\nk = { min = 0.1, max = 5 }\n\
+                   area = { fixed = 2 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                   x = { variable = \"time\", column = \"t\" }\n[experiment.outputs]\n\
+                   h = { columns = [\"h1\", \"h2\"], sigma = 0.01 }\n\
+                   q = { column = \"q\", sigma = 0.01, error = \"lognormal\" }\n";
+    let data = table("t,h1,h2,q", |t| {
+        let h = height(t, 1.0, 0.0);
+        format!("{},{},{}", h + 0.01, h - 0.01, 0.8 * h)
+    });
+    let solution = solved(&[("p.toml", problem.to_owned()), ("d.csv", data)]);
+    let names: Vec<&str> = solution.series.iter().map(|own| own.y[0].as_str()).collect();
+    assert_eq!(names, ["h", "h", "ln(q)"]);
+}
