@@ -128,7 +128,7 @@ pub mod internals {
         bytecode, causalize, codegen, eval, external, flatten, format, functions, lower, runtime,
         symbolic, syntax, value,
     };
-    pub use gapilib_numerics::{ga, mat, results, sim};
+    pub use gapilib_numerics::{frequency, ga, mat, results, sim};
     pub use gapilib_script as script;
     pub use gapilib_script::{lessons, packages, teach};
 

@@ -247,6 +247,7 @@ fn curve(evaluations: u64) -> Problem {
             x,
             y,
             weight: 1.0,
+            relative: Vec::new(),
             sigma: Sigma::Unknown,
             column: "V".to_owned(),
             x_column: String::new(),

@@ -14,6 +14,11 @@ record Experiment "An experiment of a problem: what was measured, and under whic
   String states[:] = fill("", 0) "States with other initial values in this experiment";
   Real stateValues[:] = fill(0.0, 0) "Those values";
   Real weight = 1 "The whole experiment counts times this";
+  String spectrumInput = "" "For a spectrum: the input of the model that oscillates; outputs are then real and imaginary";
+  String spectrumOutput = "" "The variable that answers";
+  Real spectrumFactor = 1 "What their ratio is multiplied with";
+  Real spectrumTime[:] = fill(0.0, 0) "Time of the operating point; empty for the start";
+  String spectrumWeighting = "" "modulus, unit or proportional; empty for modulus";
   Boolean validation = false "Whether it is compared at the end only";
   Real startTime[:] = fill(0.0, 0) "Time at which the initial values hold; empty for that of the model";
   Real stopTime = 0 "End of the simulation; 0 for that of the data";

@@ -1,7 +1,8 @@
 //! What variables are called in pictures: what their model describes them as.
 
 use super::model::Model;
-use crate::plot::Axis;
+use crate::plot::{Axis, Scale};
+use crate::spectrum::FREQUENCY;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -35,6 +36,10 @@ impl Descriptions {
 
     /// The axis of a variable with its unit.
     pub fn axis(&self, [name, unit]: &[String; 2]) -> Axis {
-        Axis::of_variable(name, self.of(name), unit)
+        let axis = Axis::of_variable(name, self.of(name), unit);
+        match name == FREQUENCY {
+            true => Axis { scale: Scale::Logarithmic, ..axis },
+            false => axis,
+        }
     }
 }

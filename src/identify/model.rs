@@ -1,5 +1,6 @@
 //! What the identification needs of a model: names, and systems to simulate.
 
+use crate::codegen::LinearPart;
 use crate::diag::{Diagnostic, Fault};
 use crate::fmi::description::DefaultExperiment;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory};
@@ -62,6 +63,10 @@ pub trait Model: Send + Sync {
     fn driven(&self) -> Option<(&str, &str)> {
         None
     }
+    /// X of its trajectories where that is not the time but the frequency.
+    fn abscissa(&self) -> Option<&str> {
+        None
+    }
     /// The simulation settings of its `experiment` annotation.
     fn settings(&self) -> Settings;
     /// Whether its `experiment` annotation gives a stop time; without one it is simulated as far as
@@ -110,6 +115,21 @@ pub struct PortableModel {
     pub values: Vec<(usize, f64)>,
     /// [`Program::to_bytes`](crate::codegen::Program::to_bytes).
     pub program: Vec<u8>,
+    /// Which of its spectra is meant, if any.
+    pub spectrum: Option<Spectrum>,
+}
+
+/// Which spectrum of a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spectrum {
+    /// Where the entries of the Jacobian are found.
+    pub linear: LinearPart,
+    /// When the simulation begins, and the time of the operating point; equal where it does not move.
+    pub times: [f64; 2],
+    /// What y/u is multiplied with; −1 for the impedance of a source whose current flows out.
+    pub factor: f64,
+    /// Its unit.
+    pub unit: String,
 }
 
 /// A system with settable parameters.

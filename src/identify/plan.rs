@@ -37,7 +37,7 @@ pub fn plan(
     if model.driven().is_some_and(|(driven, _)| driven == x_name) {
         return Ok(Plan::OneByOne);
     }
-    let times = if x_name == TIME {
+    let times = if x_name == TIME || model.abscissa() == Some(x_name) {
         if !model.has_stop_time() {
             settings.stop = points.iter().copied().fold(settings.start, f64::max);
         }

@@ -448,6 +448,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         x: compared.x.clone(),
         y: compared.measured.clone()?,
         weight,
+        relative: Vec::new(),
         sigma: Sigma::Unknown,
         column: study.y.name.clone(),
         x_column: String::new(),

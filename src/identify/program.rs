@@ -156,7 +156,7 @@ impl Model for CompiledModel {
             return Err("calls functions in C, or is too large".to_owned());
         };
         let (name, driven, values) = (self.name.clone(), self.driven.clone(), self.values.clone());
-        Ok(PortableModel { name, driven, values, program })
+        Ok(PortableModel { name, driven, values, program, spectrum: None })
     }
 
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault> {

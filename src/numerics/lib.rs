@@ -1,7 +1,9 @@
 //! The numbers of gapilib, without Modelica:
 //!
 //! - [`sim`]: integrators, events, trajectories;
+//! - [`frequency`]: the response of linear systems to oscillations;
 //! - [`ga`]: the genetic algorithm and other optimizers;
+//! - [`kramers_kronig`]: whether a spectrum can be that of a linear system;
 //! - [`mat`], [`results`]: tables of numbers and results of simulations, in files.
 
 #![cfg_attr(
@@ -15,7 +17,9 @@ pub(crate) use gapilib_base::{
     bail, budget, codes, diag, elementary, fault, registry, singular_values, units,
 };
 
+pub mod frequency;
 pub mod ga;
+pub mod kramers_kronig;
 pub mod mat;
 pub mod results;
 pub mod sim;

@@ -14,9 +14,10 @@ fn main() -> io::Result<()> {
 
 /// Writes a table of the files below a folder of the crate: their paths below it, and their bytes.
 fn embed(folder: &str, table_name: &str) -> io::Result<()> {
-    println!("cargo::rerun-if-changed={folder}");
     let variable = |name| env::var_os(name).map(PathBuf::from).ok_or(io::ErrorKind::NotFound);
     let root = variable("CARGO_MANIFEST_DIR")?.join(folder);
+    // Cargo does not follow a link to what has changed.
+    println!("cargo::rerun-if-changed={}", fs::canonicalize(&root)?.display());
     let mut files = Vec::new();
     collect(&root, &mut files)?;
     files.sort();

@@ -22,7 +22,7 @@ pub(crate) use gapilib_identify as identify;
 pub(crate) use gapilib_modelica::{
     causalize, codegen, eval, external, flatten, functions, lower, runtime, symbolic, syntax, value,
 };
-pub(crate) use gapilib_numerics::{ga, mat, results, sim};
+pub(crate) use gapilib_numerics::{frequency, ga, kramers_kronig, mat, results, sim};
 
 pub mod access;
 pub mod builtins;

@@ -179,6 +179,7 @@ impl Dataset {
             x: rows.iter().map(|&row| self.points[row][0]).collect(),
             y: rows.iter().map(|&row| self.y[row]).collect(),
             weight: 1.0,
+            relative: Vec::new(),
             sigma: Sigma::Unknown,
             column: "y".into(),
             x_column: String::new(),

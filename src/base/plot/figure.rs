@@ -9,6 +9,35 @@ pub struct Figure {
     pub panels: Vec<Panel>,
 }
 
+impl Figure {
+    /// One panel whose axes have the same scale, for curves in a plane.
+    pub fn plane(x: Axis, y: Axis, mut series: Vec<Series>) -> Figure {
+        /// The width of the area for data, about.
+        const WIDTH: f64 = 520.0;
+        const HEIGHTS: [f64; 2] = [140.0, 420.0];
+        let range = |values: fn(&Series) -> &[f64]| {
+            let all = series.iter().flat_map(values).filter(|value| value.is_finite());
+            let ends = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = all.fold(ends, |(a, b), v| (a.min(*v), b.max(*v)));
+            if low < high { [low, high] } else { [low - 0.5, low + 0.5] }
+        };
+        let (of_x, of_y) = (range(|own| &own.x), range(|own| &own.y));
+        let [width, height] = [of_x, of_y].map(|[low, high]| high - low);
+        let drawn = (WIDTH * height / width).clamp(HEIGHTS[0], HEIGHTS[1]);
+        // Corners that nothing is drawn at make the ranges as long as the lengths.
+        let extended = |[low, high]: [f64; 2], length: f64| {
+            let more = (0.5 * (length - (high - low))).max(0.0);
+            vec![low - more, high + more]
+        };
+        let x_corners = extended(of_x, height * WIDTH / drawn);
+        let y_corners = extended(of_y, width * drawn / WIDTH);
+        let name = String::new();
+        series.insert(0, Series { name, x: x_corners, y: y_corners, mark: Mark::Area, colour: 0 });
+        let panel = Panel { x, y, height: drawn, zero_line: true, series };
+        Figure { title: String::new(), panels: vec![panel] }
+    }
+}
+
 /// A pair of axes with data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {

@@ -115,7 +115,7 @@ fn weights_at(problem: &Problem, simulated: &[f64]) -> Vec<f64> {
     for series in &problem.series {
         let (own, others) = rest.split_at(series.y.len());
         weights.extend(match series.sigma {
-            Sigma::Formula(_) => series.sigma.weights(own, series.weight),
+            Sigma::Formula(_) => series.weights_at(own),
             _ => series.weights(),
         });
         rest = others;

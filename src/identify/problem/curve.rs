@@ -1,6 +1,7 @@
 //! The simulated curve between the measured points, for drawing.
 
 use super::{Experiment, ModelSimulator, Observation, Series, Simulate, Solution, SolvedSeries};
+use crate::elementary;
 use crate::sim::TimeBudget;
 
 /// Points of a curve beside the measured ones: one for every third pixel of a figure.
@@ -43,8 +44,12 @@ fn curves(
     values: &[f64],
     hurry: Option<TimeBudget>,
 ) -> Option<Vec<Vec<[f64; 2]>>> {
-    let dense =
-        |observation: &Observation| Observation { x: grid(&observation.x), ..observation.clone() };
+    let is_over_frequency = experiment.model.abscissa() == Some(experiment.x_name.as_str());
+    let places = |x: &[f64]| if is_over_frequency { grid_of_ratios(x) } else { grid(x) };
+    let dense = |observation: &Observation| Observation {
+        x: places(&observation.x),
+        ..observation.clone()
+    };
     let observations: Vec<Observation> = experiment.observations.iter().map(dense).collect();
     let grids: Vec<Vec<f64>> = observations.iter().map(|dense| dense.x.clone()).collect();
     let mut dense = Experiment { observations, ..experiment.clone() };
@@ -65,6 +70,21 @@ fn grid(measured: &[f64]) -> Vec<f64> {
     let high = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let step = (high - low) / POINTS as f64;
     let between = (1..POINTS).map(|k| step.mul_add(k as f64, low));
+    let mut grid: Vec<f64> = measured.iter().copied().chain(between).collect();
+    grid.sort_by(f64::total_cmp);
+    grid.dedup();
+    grid
+}
+
+/// The same evenly by the logarithm, for frequencies.
+fn grid_of_ratios(measured: &[f64]) -> Vec<f64> {
+    let logarithms: Vec<f64> = measured.iter().map(|x| elementary::ln(*x)).collect();
+    let between = grid(&logarithms).into_iter().map(elementary::exp);
+    let low = measured.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The measured places themselves, not what their logarithms round to.
+    let is_measured = |x: &f64| measured.iter().any(|own| (own / x - 1.0).abs() < 1e-12);
+    let between = between.filter(|x| *x > low && *x < high && !is_measured(x));
     let mut grid: Vec<f64> = measured.iter().copied().chain(between).collect();
     grid.sort_by(f64::total_cmp);
     grid.dedup();

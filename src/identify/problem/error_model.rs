@@ -157,7 +157,7 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
             })
         });
         if let Some(group) = group {
-            sizes[group].extend(own.y.iter().map(|y| own.weight * y));
+            sizes[group].extend(own.weights().iter().zip(&own.y).map(|(weight, y)| weight * y));
         }
         groups.extend(own.y.iter().map(|_| group));
     }

@@ -36,6 +36,7 @@ mod misread;
 mod non_identifiable;
 mod notes;
 mod parts;
+mod plane;
 mod portable;
 mod profile;
 mod profiled;
@@ -85,6 +86,7 @@ pub use non_identifiable::Form;
 pub(crate) use non_identifiable::NonIdentifiable;
 use parts::other_shards;
 pub use parts::{Parts, Shard, ShardFile, missing_shards};
+pub(crate) use plane::planes;
 pub use portable::{Portable, PortableExperiment};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;
@@ -174,6 +176,8 @@ pub struct Series {
     pub y: Vec<f64>,
     /// Every difference counts times this, besides the reciprocal of its sigma.
     pub weight: f64,
+    /// What the standard deviations of the points are proportional to; empty where they are equal.
+    pub relative: Vec<f64>,
     /// The standard deviation of the errors.
     pub sigma: Sigma,
     /// The column of the data that Y was read from.
@@ -196,10 +200,17 @@ impl Series {
         }
     }
 
+    /// The same where the output is `values`.
+    pub(super) fn weights_at(&self, values: &[f64]) -> Vec<f64> {
+        let mut weights = self.sigma.weights(values, self.weight);
+        weights.iter_mut().zip(&self.relative).for_each(|(weight, size)| *weight /= size);
+        weights
+    }
+
     /// What the difference of each point counts, as far as it is known before the fit; a formula
     /// for sigma is taken at the measured values.
     pub fn weights(&self) -> Vec<f64> {
-        self.sigma.weights(&self.y, self.weight)
+        self.weights_at(&self.y)
     }
 }
 

@@ -39,6 +39,7 @@ pub(super) fn problem(
         x: x.clone(),
         y,
         weight: 1.0,
+        relative: Vec::new(),
         sigma: Sigma::Unknown,
         column: String::new(),
         x_column: String::new(),

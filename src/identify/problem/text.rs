@@ -1,6 +1,6 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{EndingKind, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
+use super::{EndingKind, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict, planes};
 use crate::Descriptions;
 use crate::plot::{self, Comparison, Figure};
 use crate::table::{counted, digits_of, ends, quoted, significant};
@@ -296,7 +296,13 @@ impl Solution {
             let name = if k == 0 { "fit.svg".to_owned() } else { format!("fit-{}.svg", k + 1) };
             Some((name, series.figure(self.class_name(), &self.subject.descriptions)?))
         };
-        self.series.iter().enumerate().filter_map(named).collect()
+        let mut figures: Vec<(String, Figure)> =
+            self.series.iter().enumerate().filter_map(named).collect();
+        for (k, (_, figure)) in planes(&self.series).into_iter().enumerate() {
+            let number = if k == 0 { String::new() } else { format!("-{}", k + 1) };
+            figures.push((format!("nyquist{number}.svg"), figure));
+        }
+        figures
     }
 
     /// The calibrated model: the model with the values found.

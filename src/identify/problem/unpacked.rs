@@ -7,7 +7,7 @@ use crate::codegen::Program;
 use crate::diag::Fault;
 use crate::fault;
 use crate::registry::BAD_OPTION;
-use crate::{CompiledModel, Model, PortableModel};
+use crate::{CompiledModel, Model, PortableModel, SpectrumModel};
 use std::sync::Arc;
 
 /// The simulator; `clock` measures the budgets of time.
@@ -46,13 +46,14 @@ fn experiment(portable: PortableExperiment, clock: fn() -> f64) -> Result<Experi
 }
 
 fn model(portable: PortableModel) -> Result<Arc<dyn Model>, Fault> {
-    let PortableModel { name, driven, values, program } = portable;
+    let PortableModel { name, driven, values, program, spectrum } = portable;
     let Some(program) = Program::from_bytes(&program) else {
         return Err(fault!(BAD_OPTION, "the compiled model `{name}` cannot be read"));
     };
     let model = CompiledModel::new(name, program).with_values(values);
-    Ok(Arc::new(match driven {
-        Some((x_name, parameter)) => model.driven_by(&x_name, &parameter),
-        None => model,
-    }))
+    Ok(match (driven, spectrum) {
+        (_, Some(spectrum)) => Arc::new(SpectrumModel::new(model, spectrum)),
+        (Some((x_name, parameter)), None) => Arc::new(model.driven_by(&x_name, &parameter)),
+        (None, None) => Arc::new(model),
+    })
 }

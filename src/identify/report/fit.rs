@@ -37,16 +37,29 @@ pub fn section(view: &View) -> Option<Section> {
 pub(super) fn others(view: &View) -> Option<Section> {
     let all = all(view);
     let others = all.get(1..).unwrap_or_default();
-    if others.is_empty() && view.unmeasured.is_empty() {
+    let solution = view.solution;
+    let mut planes = crate::problem::planes(&solution.series);
+    planes.extend(crate::problem::planes(&solution.validation));
+    if others.is_empty() && view.unmeasured.is_empty() && planes.is_empty() {
         return None;
     }
     let descriptions = &view.solution.subject.descriptions;
     let content = html! {
-        div.figures { @for (series, curve, kind) in others { (one(series, (curve, kind), descriptions)) }
+        div.figures {
+            @for (name, drawing) in &planes { (in_plane(name, drawing)) }
+            @for (series, curve, kind) in others { (one(series, (curve, kind), descriptions)) }
             @for band in &view.unmeasured { (unmeasured(band, descriptions)) }
         }
     };
     Some(Section { id: "series", heading: "Further series", content, wide: true })
+}
+
+/// A spectrum in the plane of complex numbers.
+fn in_plane(name: &str, drawing: &Figure) -> Markup {
+    let name = if name.is_empty() { "spectrum" } else { name };
+    let label = format!("{name}: the measured spectrum and the simulated one in the complex plane");
+    let caption = html! { strong { (name) } ": Nyquist plot, both axes to the same scale." };
+    figure(drawing, &label, &caption)
 }
 
 fn name(series: &SolvedSeries, kind: &str) -> String {

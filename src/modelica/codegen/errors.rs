@@ -31,6 +31,11 @@ crate::codes! {
         "## What it means\nThe model has as many equations as unknowns, but some equations follow from others, so they do not determine the unknowns listed. The equations are consistent, and the simulation continues. Of the solutions of a linear loop, it uses the one with the smallest values (minimum norm); of those of a nonlinear loop at the start, one near the start values.\n\n\
          ## Example\n`a + b = 1; 2*a + 2*b = 2;` holds for any `a`.\n\n\
          ## What to do\nReplace the redundant equation by one that determines the unknowns: a ground, a reference value, another load path. Until then, the values of the unknowns listed, and all values that depend on them, are meaningless.",
+    /// A model that has no linear part.
+    NOT_LINEARIZED = "not-linearized":
+        "## What it means\nThe model cannot be linearized as a system from the input to the output: its states determine the input, it chooses its states at run time, or an equation depends on a derivative of the input that the linear system does not have.\n\n\
+         ## Example\nThe voltage of a capacitor as an input, where the current is the output.\n\n\
+         ## What to do\nTake the other variable of the connection as the input, or filter the input with a first-order block.",
     /// A variable that the model does not have.
     UNKNOWN_VARIABLE = "unknown-variable":
         "## What it means\nThe model has no variable of this name.\n\n\

@@ -5,6 +5,7 @@
 //! iteration_variables   which tearing variables stay unknowns of the DAE
 //! jacobian, sensitivity symbolic derivatives: forward mode, column by column
 //! tape_builder          expressions as instructions, common subexpressions once
+//! linear_part           the Jacobian as variables of the model
 //! linearity             whether the right-hand side is affine between events
 //! hoist                 what depends on parameters alone runs once a simulation
 //! compilation           all of it, in order: Program::compile
@@ -23,6 +24,7 @@ pub(crate) mod hoist;
 pub(crate) mod instruction;
 mod iteration_variables;
 pub(crate) mod jacobian;
+mod linear_part;
 pub(crate) mod linear_system;
 mod linearity;
 #[cfg(feature = "jit")]
@@ -56,6 +58,7 @@ mod upcalls;
 mod validation;
 
 pub use exchange::{Attributes, Needs};
+pub use linear_part::{InputChain, LinearEntry, LinearPart};
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
 pub use stored::bytes_of;

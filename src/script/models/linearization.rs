@@ -13,9 +13,9 @@
 use super::simulation::{self, SimulationOptions, Translated};
 use crate::Session;
 use crate::causalize;
+use crate::codegen::errors::NOT_LINEARIZED;
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
 use crate::results::ResultTable;
@@ -80,14 +80,14 @@ fn linearized_variant(
     let slopes = reduced(system, time, &y0, &outputs)
         .map_err(|_| {
             Fault::new(
-                BAD_ARGUMENT,
+                NOT_LINEARIZED,
                 format!("the derivatives of `{}` cannot be computed at this point", model.problem),
             )
         })
         .and_then(|slopes| {
             slopes.ok_or_else(|| {
                 Fault::new(
-                    BAD_ARGUMENT,
+                    NOT_LINEARIZED,
                     format!("the algebraic equations of `{}` are singular", model.problem),
                 )
             })
@@ -242,7 +242,7 @@ impl Places {
             });
             found.ok_or_else(|| {
                 fault!(
-                    BAD_ARGUMENT,
+                    NOT_LINEARIZED,
                     "`{}` cannot be linearized: its states determine its input `{name}`",
                     model.problem
                 )
@@ -263,7 +263,7 @@ impl Places {
         for row in rows {
             for (input, (column, _)) in inputs.iter().zip(&self.slopes) {
                 if slopes[(row, *column)] != 0.0 {
-                    return Err(fault!(BAD_ARGUMENT,
+                    return Err(fault!(NOT_LINEARIZED,
                         "`{problem}` depends on the derivative of its input `{input}`, so it is \
                          not a linear system of its states and inputs";
                         help: "filter the input with a first-order block"));

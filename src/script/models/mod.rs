@@ -30,6 +30,7 @@ mod reading;
 mod resources;
 mod restart;
 pub mod simulation;
+pub(crate) mod spectrum;
 pub(crate) mod static_curve;
 pub mod stored;
 pub mod translated;

@@ -17,5 +17,6 @@ mod resume;
 mod scale;
 mod searches;
 mod shards;
+mod spectra;
 mod watching;
 mod whole_runs;

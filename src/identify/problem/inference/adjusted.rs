@@ -188,6 +188,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         x: vec![0.0],
         y: vec![mean],
         weight: 1.0,
+        relative: Vec::new(),
         sigma: Sigma::Given(vec![sd]),
         column: String::new(),
         x_column: String::new(),

@@ -201,7 +201,8 @@ fn dense(
         settings.stop = settings.stop.max(end);
     }
     let dense = Experiment { settings, ..experiment.clone() };
-    if experiment.model.driven().is_some_and(|(driven, _)| driven == experiment.x_name) {
+    let is_free = experiment.model.driven().is_some_and(|(driven, _)| driven == experiment.x_name);
+    if is_free || is_over_frequency(experiment) {
         return over_input(&dense, around, request);
     }
     let simulated = match simulated_range(&dense, around)? {
@@ -246,7 +247,11 @@ fn on_grid(
         return Ok(Err(format!("`{}` does not vary there", dense.x_name)));
     };
     let last = (request.points.max(2) - 1) as f64;
-    let x: Vec<f64> = (0..=last as usize).map(|k| low + (high - low) * (k as f64 / last)).collect();
+    let at = |share: f64| match is_over_frequency(&dense) {
+        true => low * elementary::powf(high / low, share),
+        false => low + (high - low) * share,
+    };
+    let x: Vec<f64> = (0..=last as usize).map(|k| at(k as f64 / last)).collect();
     let own = dense.observations.iter().map(|observation| observation.y_name.clone());
     let mut names: Vec<String> = own.collect();
     for variable in
@@ -264,6 +269,11 @@ fn on_grid(
         }
     }
     Ok(Ok(dense))
+}
+
+/// Whether X is a frequency, whose points are spaced by their ratio.
+fn is_over_frequency(experiment: &Experiment) -> bool {
+    experiment.model.abscissa() == Some(experiment.x_name.as_str())
 }
 
 /// Ranges that may be empty.
@@ -286,6 +296,10 @@ fn measured_range(experiment: &Experiment, beyond: f64) -> [f64; 2] {
     let all = experiment.observations.iter().flat_map(|observation| &observation.x);
     let (low, high) =
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    if is_over_frequency(experiment) {
+        let factor = elementary::powf(high / low, beyond);
+        return [low / factor, high * factor];
+    }
     let beyond = beyond * (high - low);
     [low - beyond, high + beyond]
 }

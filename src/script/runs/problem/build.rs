@@ -11,7 +11,7 @@ use super::inputs::Undecided;
 use super::misread::{self, Doubts};
 use super::operators::{self, Named};
 use super::segments::Segment;
-use super::{experiment, imported, own_fitness, set_file};
+use super::{experiment, imported, own_fitness, set_file, spectrum};
 use crate::Session;
 use crate::diag::{At as _, Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
@@ -259,9 +259,13 @@ fn experiments(
         let rows = segment.rows.clone().map(|rows| own.table.rows(rows, own.count));
         let table = rows.as_ref().unwrap_or(&own.table);
         let source = experiment::Source { file, entry, label, segment, number, table, free };
-        let built = match unit {
-            Some(unit) => imported::build(&source, (session, unit), notes)?,
-            None => source.build(session, notes)?,
+        let built = match (unit, &entry.spectrum) {
+            (Some(unit), None) => imported::build(&source, (session, unit), notes)?,
+            (None, None) => source.build(session, notes)?,
+            (None, Some(own)) => spectrum::build(&source, own, session, notes)?,
+            (Some(_), Some(_)) => {
+                return Err(vec![no_spectrum().at(entry.places.at(&["spectrum"]))]);
+            }
         };
         all.noise = all.noise.max(built.error);
         if let Some(program) = &built.program {
@@ -287,6 +291,11 @@ fn experiments(
             .help("add a table `[[experiment]]`")));
     }
     Ok(all)
+}
+
+fn no_spectrum() -> Fault {
+    fault!(BAD_OPTION, "spectra of FMUs are not supported")
+        .help("fit the Modelica model that the FMU was exported from")
 }
 
 /// The title as it is allowed in files and on terminals.

@@ -7,7 +7,7 @@ use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile};
 use super::inputs::{self, Times, Undecided};
 use super::segments::{Rows, Segment, segments};
 use super::series::Comparison;
-use super::{dynamics, enclosing_class, parameters, time_axis};
+use super::{dynamics, enclosing_class, frequency_axis, parameters, time_axis};
 use crate::Session;
 use crate::codegen::Program;
 use crate::diag::{At as _, Diagnostic, Fault};
@@ -90,12 +90,12 @@ pub(super) struct Subject {
 }
 
 /// The model of an experiment in its class.
-struct Class {
-    name: String,
+pub(super) struct Class {
+    pub(super) name: String,
     /// The free parameters with their names in the class.
-    parameters: Vec<(usize, String)>,
+    pub(super) parameters: Vec<(usize, String)>,
     /// The names of the outputs in the class.
-    observed: Vec<String>,
+    pub(super) observed: Vec<String>,
     /// Whether X is a parameter of the class.
     is_driven: bool,
     undecided: Vec<Undecided>,
@@ -111,8 +111,8 @@ pub(super) fn rows(
     table: &MatFile,
     notes: &mut Notes,
 ) -> Result<(usize, Vec<Segment>), Diagnostic> {
-    let (x, name, own) = x_of(entry, table);
     let [place, cuts] = [["x"], ["segments"]].map(|way| entry.places.at(&way));
+    let (x, name, own) = x_of(entry, table).at(place)?;
     notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
     let column = data::column(table, &x, &name, notes).at(place)?;
     let count = column.values.len();
@@ -135,7 +135,10 @@ pub(super) fn rows(
 
 /// X: its entry, the variable that it is, and its column. A bare name is both; the column of time is
 /// `Time` in the result files of Dymola.
-fn x_of(entry: &ExperimentEntry, table: &MatFile) -> (ColumnEntry, String, String) {
+fn x_of(entry: &ExperimentEntry, table: &MatFile) -> Result<(ColumnEntry, String, String), Fault> {
+    if entry.spectrum.is_some() {
+        return frequency_axis::x_of(entry, table);
+    }
     let mut x = entry.x.as_ref().map_or_else(|| ColumnEntry::named(None), file::Column::entry);
     let column = x.column.clone().or_else(|| x.variable.clone());
     let column = column.unwrap_or_else(|| "time".to_owned());
@@ -144,7 +147,7 @@ fn x_of(entry: &ExperimentEntry, table: &MatFile) -> (ColumnEntry, String, Strin
         x.column = Some("Time".to_owned());
     }
     let column = x.column.clone().unwrap_or(column);
-    (x, name, column)
+    Ok((x, name, column))
 }
 
 impl Source<'_> {
@@ -264,10 +267,12 @@ impl Source<'_> {
 
     pub(super) fn abscissa(&self, notes: &mut Notes) -> Result<Abscissa, Fault> {
         let table = self.table;
-        let (entry, name, own) = x_of(self.entry, table);
+        let (entry, name, own) = x_of(self.entry, table)?;
         let column = data::column(table, &entry, &name, notes)?;
         notes.about(table, column.missing.clone());
-        notes.warn_about(table, column.fall(&own));
+        // Spectra are measured from high frequencies to low ones.
+        let fall = column.fall(&own).filter(|_| self.entry.spectrum.is_none());
+        notes.warn_about(table, fall);
         let time = match name.as_str() {
             "time" => {
                 notes.about(table, time_axis::repeated(&own, &column));
@@ -297,7 +302,7 @@ impl Source<'_> {
     }
 
     /// The class around the model, loaded.
-    fn class(
+    pub(super) fn class(
         &self,
         session: &mut Session,
         x: &Abscissa,

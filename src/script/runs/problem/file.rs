@@ -108,8 +108,10 @@ pub(super) struct ExperimentEntry {
     pub data: PathBuf,
     /// The variable that the outputs were measured over; `time` unless given.
     pub x: Option<Column>,
-    /// Variables that were measured.
+    /// Variables that were measured, or parts of a spectrum.
     pub outputs: IndexMap<String, Column>,
+    /// The response to oscillations that was measured, in place of a course of time.
+    pub spectrum: Option<SpectrumEntry>,
     /// Inputs of the model that follow columns of the data.
     #[serde(default)]
     pub inputs: IndexMap<String, Column>,
@@ -142,6 +144,22 @@ pub(super) struct ExperimentEntry {
     /// Where its entries are written.
     #[serde(skip)]
     pub places: Places,
+}
+
+/// Which spectrum of the model was measured.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SpectrumEntry {
+    /// The input of the model that oscillates.
+    pub input: String,
+    /// The variable that answers.
+    pub output: String,
+    /// What their ratio is multiplied with; −1 where a current flows out.
+    pub factor: Option<f64>,
+    /// When the operating point is reached, in seconds; the start of the simulation unless given.
+    pub at: Option<f64>,
+    /// `modulus`, `unit` or `proportional`.
+    pub weighting: Option<String>,
 }
 
 /// Values of parameters: a table, or the name of a file of SSP, whose values are read into it.

@@ -23,6 +23,7 @@ mod file;
 mod flat;
 mod former;
 mod forms;
+mod frequency_axis;
 mod imported;
 mod inference;
 mod inputs;
@@ -45,6 +46,7 @@ mod series;
 mod set_file;
 mod shards;
 mod sigma;
+mod spectrum;
 mod time_axis;
 
 use super::checkpoint::{self, Checkpoint, keep_old};

@@ -82,10 +82,21 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     put_text(&mut entry, "name", fields.text("name")?);
     put_text(&mut entry, "data", fields.text("data")?);
     put_text(&mut entry, "integrator", fields.text("integrator")?);
+    let spectrum = spectrum(fields)?;
     let mut x = Table::new();
-    put_text(&mut x, "variable", fields.text("x")?);
-    put_text(&mut x, "column", fields.text("xColumn")?);
-    put(&mut entry, "x", x);
+    let (variable, column) = (fields.text("x")?, fields.text("xColumn")?);
+    // The time is what records have where nothing is said; spectra have none.
+    if spectrum.is_empty() || column != "time" {
+        put_text(&mut x, "column", column);
+    }
+    if spectrum.is_empty() {
+        put_text(&mut x, "variable", variable);
+    } else {
+        put(&mut entry, "spectrum", spectrum);
+    }
+    if !x.is_empty() {
+        put(&mut entry, "x", x);
+    }
     let names: Vec<String> = fields.get("outputs")?;
     let columns: Vec<String> = fields.get("columns")?;
     let weights: Vec<f64> = fields.get("weights")?;
@@ -121,6 +132,20 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     }
     put_number(&mut entry, "tolerance", fields.get("tolerance")?);
     Ok(entry)
+}
+
+/// The spectrum that was measured; empty where it is a course of time.
+fn spectrum(fields: &Fields<'_>) -> Result<Table, Fault> {
+    let mut spectrum = Table::new();
+    put_text(&mut spectrum, "input", fields.text("spectrumInput")?);
+    put_text(&mut spectrum, "output", fields.text("spectrumOutput")?);
+    if spectrum.is_empty() {
+        return Ok(spectrum);
+    }
+    put(&mut spectrum, "factor", fields.get::<f64>("spectrumFactor")?);
+    fields.optional("spectrumTime", "at", &mut spectrum)?;
+    put_text(&mut spectrum, "weighting", fields.text("spectrumWeighting")?);
+    Ok(spectrum)
 }
 
 /// The components of a record.

@@ -116,6 +116,7 @@ impl Comparison<'_> {
             x: rows.iter().map(|row| self.x[*row]).collect(),
             y: rows.iter().map(|row| measured.values[*row]).collect(),
             weight,
+            relative: Vec::new(),
             sigma,
             column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
             x_column: self.x_column.to_owned(),

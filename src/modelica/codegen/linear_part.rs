@@ -1,0 +1,284 @@
+//! The linear part of a model along its solution, as variables of the model: the entries of the
+//! Jacobian of its equations. A simulation computes them where they are observed, and their total
+//! derivatives by parameters with those of other variables.
+//!
+//! ```text
+//!   ẋ = f(x, z, u, u̇, …),  0 = g(x, z, u, …),  y = h(x, z, u, …)
+//!   ∂(f, g, h)/∂(x, z, u, u̇, …) at the operating point
+//! ```
+//!
+//! The input u is a chain of states of which each is the derivative of the one before, so that
+//! equations that contain derivatives of u find them; the last derivative is a parameter.
+
+use super::errors::NOT_LINEARIZED;
+use super::jacobian::{Differentiated, differentiate_sequence};
+use super::sequence::{resolved, right_sides, slice};
+use crate::causalize::{Assignment, Block, CausalizedDae};
+use crate::diag::Fault;
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
+use crate::lower::{StateSelect, Variable, VariableKind};
+use crate::source::Span;
+use crate::symbolic::{Expr, Pool, VarId};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Where the entries of the Jacobian are found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LinearPart {
+    /// Number of states without those of the input.
+    pub n_states: usize,
+    /// Number of algebraic unknowns; their equations have no derivative.
+    pub n_algebraic: usize,
+    /// What is not always zero. Rows: states, algebraic unknowns, the output. Columns: states, algebraic
+    /// unknowns, the input and its derivatives.
+    pub entries: Vec<LinearEntry>,
+}
+
+/// An entry of the Jacobian.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LinearEntry {
+    /// Its row.
+    pub row: usize,
+    /// Its column.
+    pub column: usize,
+    /// A number, or the name of the variable that has its value.
+    pub value: Result<String, f64>,
+}
+
+/// The chain of an input: itself or what is added to it, its derivatives, and at the end a parameter.
+pub struct InputChain<'a> {
+    /// The states, each the derivative of the one before.
+    pub states: &'a [String],
+    /// The parameter that is the derivative of the last one.
+    pub end: &'a str,
+}
+
+impl LinearPart {
+    /// Adds variables for the entries to a system. The output is the name of a variable.
+    ///
+    /// # Errors
+    ///
+    /// Names that the system does not have, an input that its states determine, an output that depends on
+    /// higher derivatives of the input than the chain has.
+    pub fn add_to(
+        sorted: &mut CausalizedDae,
+        chain: &InputChain<'_>,
+        output: &str,
+    ) -> Result<LinearPart, Fault> {
+        if !sorted.selections.is_empty() {
+            return Err(fault!(
+                NOT_LINEARIZED,
+                "`{}` cannot be linearized: it chooses its states at run time",
+                sorted.dae.name
+            ));
+        }
+        let mut pool = std::mem::take(&mut sorted.dae.pool);
+        let made = Made::of(&mut pool, sorted, chain, output);
+        sorted.dae.pool = pool;
+        made
+    }
+}
+
+/// What the linear part is made from.
+struct Made {
+    /// By unknown: the column, and the sign that the unknown has there.
+    columns: Vec<Column>,
+    n_states: usize,
+    n_algebraic: usize,
+    derivatives: Differentiated,
+    /// The first number of new variables.
+    first: u32,
+}
+
+/// What an unknown is.
+#[derive(Clone, Copy)]
+enum Column {
+    Unknown(usize),
+    /// The input or one of its derivatives.
+    Input {
+        order: usize,
+        sign: f64,
+    },
+}
+
+impl Made {
+    fn of(
+        pool: &mut Pool,
+        sorted: &mut CausalizedDae,
+        chain: &InputChain<'_>,
+        output: &str,
+    ) -> Result<LinearPart, Fault> {
+        let y = variable(sorted, output)?;
+        let end = variable(sorted, chain.end)?;
+        let mut outputs = right_sides(sorted, pool);
+        let mut iteration = Vec::new();
+        for block in &sorted.blocks {
+            outputs.extend(block.residuals());
+            if let Block::Loop(torn) = block {
+                iteration.extend(&torn.iteration);
+            }
+        }
+        outputs.push(resolved(pool, sorted, y));
+        let sequence: Vec<Assignment> =
+            sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
+        let needed = slice(pool, &sequence, &outputs);
+        let mut unknowns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
+        let columns = columns(sorted, chain, &unknowns)?;
+        let n_states = sorted.states.len() - chain.states.len();
+        unknowns.push(end);
+        let first = sorted.dae.variables.len() as u32;
+        let mut next = first;
+        let derivatives = differentiate_sequence(pool, &needed, &outputs, &unknowns, &mut next);
+        let made = Made { columns, n_states, n_algebraic: iteration.len(), derivatives, first };
+        made.refuse_derivatives(sorted, chain)?;
+        Ok(made.added(pool, sorted))
+    }
+
+    /// The row of an equation; `None` for those of the input.
+    fn row(&self, equation: usize) -> Option<usize> {
+        match self.columns.get(equation) {
+            Some(Column::Unknown(row)) => Some(*row),
+            Some(Column::Input { .. }) => None,
+            None => Some(self.n_states + self.n_algebraic),
+        }
+    }
+
+    /// Refuses equations that contain the end of the chain, other than that of the chain itself.
+    fn refuse_derivatives(
+        &self,
+        sorted: &CausalizedDae,
+        chain: &InputChain<'_>,
+    ) -> Result<(), Fault> {
+        let rows = self.derivatives.rows.iter().enumerate();
+        let end = self.columns.len();
+        let wrong = rows
+            .into_iter()
+            .any(|(equation, row)| self.row(equation).is_some() && row.contains_key(&end));
+        match wrong {
+            true => Err(fault!(
+                NOT_LINEARIZED,
+                "`{}` cannot be linearized: an equation depends on the derivative of its input of order {}",
+                sorted.dae.name,
+                chain.states.len();
+                help: "filter the input with a first-order block"
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// Makes the derivatives variables of the system.
+    fn added(self, pool: &mut Pool, sorted: &mut CausalizedDae) -> LinearPart {
+        let is_new = |a: &&Assignment| a.variable.0 >= self.first;
+        let auxiliary: Vec<Assignment> =
+            self.derivatives.sequence.iter().filter(is_new).copied().collect();
+        for (number, assignment) in auxiliary.iter().enumerate() {
+            // They are numbered in the order of their assignments.
+            debug_assert_eq!(assignment.variable.0 as usize, self.first as usize + number);
+            add(sorted, *assignment, format!("'derivative {number}'"));
+        }
+        let mut entries = Vec::new();
+        for (equation, row_of) in self.derivatives.rows.iter().enumerate() {
+            let Some(row) = self.row(equation) else { continue };
+            for (unknown, value) in row_of {
+                let (column, sign) = match self.columns.get(*unknown) {
+                    Some(Column::Unknown(column)) => (*column, 1.0),
+                    Some(Column::Input { order, sign }) => {
+                        (self.n_states + self.n_algebraic + order, *sign)
+                    }
+                    None => continue,
+                };
+                let value = scaled(pool, *value, sign);
+                let value = match pool.as_constant(value) {
+                    Some(number) => Err(number),
+                    None => {
+                        let name = format!("'derivative of equation {row} by unknown {column}'");
+                        let variable = VarId(sorted.dae.variables.len() as u32);
+                        add(sorted, Assignment { variable, value, equation: 0 }, name.clone());
+                        Ok(name)
+                    }
+                };
+                entries.push(LinearEntry { row, column, value });
+            }
+        }
+        LinearPart { n_states: self.n_states, n_algebraic: self.n_algebraic, entries }
+    }
+}
+
+fn scaled(pool: &mut Pool, value: Expr, sign: f64) -> Expr {
+    if sign < 0.0 { pool.neg(value) } else { value }
+}
+
+/// What the unknowns are: those of the chain are found among the states.
+fn columns(
+    sorted: &CausalizedDae,
+    chain: &InputChain<'_>,
+    unknowns: &[VarId],
+) -> Result<Vec<Column>, Fault> {
+    let mut inputs = Vec::new();
+    for name in chain.states {
+        let own = variable(sorted, name)?;
+        let (of, negated) = match sorted.aliases[own.0 as usize] {
+            Some(alias) => (alias.of, alias.negated),
+            None => (own, false),
+        };
+        if !sorted.states.contains(&of) {
+            return Err(fault!(
+                NOT_LINEARIZED,
+                "`{}` cannot be linearized: its states determine its input",
+                sorted.dae.name;
+                help: "take another variable as the input, one that is not connected to a storage"
+            ));
+        }
+        inputs.push((of, if negated { -1.0 } else { 1.0 }));
+    }
+    let mut next = 0;
+    let column = |unknown: &VarId| match inputs.iter().position(|(of, _)| of == unknown) {
+        Some(order) => Column::Input { order, sign: inputs[order].1 },
+        None => {
+            next += 1;
+            Column::Unknown(next - 1)
+        }
+    };
+    Ok(unknowns.iter().map(column).collect())
+}
+
+fn variable(sorted: &CausalizedDae, name: &str) -> Result<VarId, Fault> {
+    let found = sorted.dae.variables.iter().position(|variable| &*variable.name == name);
+    found
+        .map(|at| VarId(at as u32))
+        .ok_or_else(|| fault!(NOT_LINEARIZED, "`{}` has no variable `{name}`", sorted.dae.name))
+}
+
+/// Adds a variable with its value, which must be the next one.
+fn add(sorted: &mut CausalizedDae, assignment: Assignment, name: String) {
+    let empty: Arc<str> = "".into();
+    sorted.dae.variables.push(Variable {
+        name: name.into(),
+        kind: VariableKind::Unknown,
+        base: BaseType::Real,
+        variability: Variability::Continuous,
+        causality: None,
+        top_level: true,
+        protected: true,
+        is_relative: false,
+        unit: empty.clone(),
+        display_unit: empty.clone(),
+        description: empty,
+        binding: None,
+        start: None,
+        fixed: false,
+        min: None,
+        max: None,
+        nominal: None,
+        state_select: StateSelect::Default,
+        span: Span::NONE,
+    });
+    sorted.aliases.push(None);
+    let CausalizedDae { blocks, event_blocks, initial_blocks, .. } = sorted;
+    blocks.push(Block::Assignment(assignment));
+    initial_blocks.push(Block::Assignment(assignment));
+    if !event_blocks.is_empty() {
+        event_blocks.push(Block::Assignment(assignment));
+    }
+}

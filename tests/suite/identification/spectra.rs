@@ -1,0 +1,273 @@
+//! Spectra of models against formulas and against independent fits of the same numbers.
+
+use crate::support::program::{folder, gapi};
+use gapilib::internals::frequency::Number;
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+/// The result of a problem, and everything that was printed.
+fn solved(files: &[(&str, &str)]) -> (Value, String) {
+    let folder = folder(files);
+    let (code, out, error) = gapi(&folder, &["identify", "p.toml", "--out", "o", "--plain"]);
+    assert_eq!(code, 0, "{out}{error}");
+    let text = std::fs::read_to_string(folder.path().join("o/result.json")).unwrap();
+    (serde_json::from_str(&text).unwrap(), out + &error)
+}
+
+fn refused(files: &[(&str, &str)]) -> String {
+    let (code, out, error) = gapi(&folder(files), &["identify", "p.toml", "--out", "o", "--plain"]);
+    assert_ne!(code, 0, "{out}");
+    error
+}
+
+/// Value and standard error of a parameter; an exact fit has none.
+fn parameter(result: &Value, name: &str) -> [f64; 2] {
+    let all = result["parameters"].as_array().unwrap();
+    let found = all.iter().find(|own| own["name"] == name).unwrap();
+    ["value", "deviation"].map(|key| found[key].as_f64().unwrap_or(f64::NAN))
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
+}
+
+fn frequencies(from: f64, to: f64, count: usize) -> Vec<f64> {
+    let ratio = (to / from).ln() / (count - 1) as f64;
+    (0..count).map(|k| from * (ratio * k as f64).exp()).collect()
+}
+
+/// The table of a spectrum.
+fn table(frequencies: &[f64], spectrum: impl Fn(Number) -> Number) -> String {
+    let mut text = "f,re,im\n".to_owned();
+    for f in frequencies {
+        let z = spectrum(Number::new(0.0, TAU * f));
+        writeln!(text, "{f:.17e},{:.17e},{:.17e}", z.re, z.im).unwrap();
+    }
+    text
+}
+
+/// A problem with one spectrum: the range of each parameter is a decade around the value after `start`.
+fn problem(model: &str, parameters: &[(&str, f64)], experiment: &str) -> String {
+    let mut text = format!("model = \"{model}\"\nfiles = [\"M.mo\"]\n[parameters]\n");
+    for (name, start) in parameters {
+        let (min, max) = (start / 3.0, start * 3.0);
+        writeln!(text, "{name} = {{ min = {min:e}, max = {max:e}, start = {start:e} }}").unwrap();
+    }
+    text + "[[experiment]]\ndata = \"d.csv\"\noutputs = { real = \"re\", imaginary = \"im\" }\n"
+        + experiment
+        + "\n[method]\nname = \"levenberg_marquardt\"\n"
+}
+
+/// The largest distance between measured and simulated points, relative to the magnitude.
+fn distance(result: &Value) -> f64 {
+    let series = result["series"].as_array().unwrap();
+    let points = |at: usize| series[at]["points"].as_array().unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let pairs = points(0).iter().zip(points(1));
+    pairs.fold(0.0, |most: f64, (re, im)| {
+        let size = number(&re[1]).hypot(number(&im[1]));
+        let off = (number(&re[1]) - number(&re[2])).hypot(number(&im[1]) - number(&im[2]));
+        most.max(off / size)
+    })
+}
+
+const ELECTRODE: &str = "model Electrode
+  input Real i(unit = \"A\");
+  output Real v(unit = \"V\");
+  parameter Real Rm(unit = \"Ohm\") = 0.05;
+  parameter Real Rct(unit = \"Ohm\") = 0.2;
+  parameter Real Q = 0.03;
+  parameter Real alpha = 0.9;
+  GAPILib.Impedance.ConstantPhaseElement layer(Q = Q, alpha = alpha, fMin = 0.01, fMax = 1e5);
+  Real faradaic(unit = \"A\");
+equation
+  i = layer.i + faradaic;
+  layer.v = Rct*faradaic;
+  v = Rm*i + layer.v;
+end Electrode;
+";
+
+/// The same 31 points with the same weights in scipy.optimize.curve_fit 1.17 (xtol, ftol, gtol 1e-15).
+#[test]
+fn values_and_standard_errors_are_those_of_scipy() {
+    let data = include_str!("../../data/spectra/electrode.csv");
+    let problem = "model = \"Electrode\"\nfiles = [\"M.mo\"]\n[parameters]\n\
+        Rm = { min = 1e-3, max = 1 }\nRct = { min = 1e-3, max = 10 }\nQ = { min = 1e-3, max = 1 }\n\
+        alpha = { min = 0.5, max = 1 }\n[[experiment]]\ndata = \"d.csv\"\n\
+        spectrum = { input = \"i\", output = \"v\" }\n\
+        outputs = { real = \"Re(Z)/Ohm\", imaginary = \"-Im(Z)/Ohm\" }\n";
+    let files = [("M.mo", ELECTRODE), ("d.csv", data), ("p.toml", problem)];
+    let (result, said) = solved(&files);
+    assert!(said.contains("exact, by sensitivity equations"), "{said}");
+    assert!(said.contains("can be that of a linear, stationary system"), "{said}");
+    for (name, value, error) in [
+        ("Rm", 0.06195301, 6.99569751e-05),
+        ("Rct", 0.30914443, 2.73207274e-04),
+        ("Q", 0.01993375, 1.25522437e-04),
+        ("alpha", 0.85036258, 9.11706376e-04),
+    ] {
+        let [found, found_error] = parameter(&result, name);
+        assert_near(found, value, 1e-6);
+        assert_near(found_error, error, 1e-5);
+    }
+}
+
+#[test]
+fn magnitude_in_decibels_and_phase_in_degrees_are_real_and_imaginary_part() {
+    let z = |s: Number| 0.05 + 0.3 / (1.0 + 0.006 * s) + 3e-7 * s;
+    let mut data = "frequency [rad/s],|Z| [dB],phase [deg]\n".to_owned();
+    for f in frequencies(0.01, 1e5, 30) {
+        let value = z(Number::new(0.0, TAU * f));
+        let (size, angle) = (20.0 * value.norm().log10(), value.arg().to_degrees());
+        writeln!(data, "{:.17e},{size:.17e},{angle:.17e}", TAU * f).unwrap();
+    }
+    let model = "model M input Real i(unit = \"A\"); output Real v(unit = \"V\"); \
+        parameter Real R = 0.04; parameter Real L = 2e-7; Real u(start = 0, fixed = true); \
+        equation 0.02*der(u) = i - u/0.3; v = R*i + u + L*der(i); end M;";
+    let problem =
+        problem("M", &[("R", 0.04), ("L", 2e-7)], "spectrum = { input = \"i\", output = \"v\" }")
+            .replace(
+                "{ real = \"re\", imaginary = \"im\" }",
+                "{ magnitude = \"|Z|\", phase = \"phase\" }",
+            );
+    let (result, said) = solved(&[("M.mo", model), ("d.csv", &data), ("p.toml", &problem)]);
+    assert_near(parameter(&result, "R")[0], 0.05, 1e-9);
+    assert_near(parameter(&result, "L")[0], 3e-7, 1e-9);
+    assert!(distance(&result) < 1e-12, "{}: {said}", distance(&result));
+    assert_eq!(result["series"][0]["y"][1], "Ohm");
+}
+
+/// The operating point of v = b log(1 + i/i₀) and of what it charges moves with b and i₀, and with it the
+/// spectrum: Z = r/(1 + r C s) with r = b/(i + i₀).
+#[test]
+fn the_operating_point_moves_with_the_parameters() {
+    let model = "model M input Real i; output Real v; parameter Real b = 0.05; parameter Real i0 = 0.02; \
+        parameter Real C = 2; Real f(start = 0.1); \
+        equation C*der(v) = i - f; v = b*log(1 + f/i0); end M;";
+    let z = |s: Number| {
+        let r: f64 = 0.06 / (0.5 + 0.03);
+        r / (1.0 + r * 2.0 * s)
+    };
+    let experiment =
+        "spectrum = { input = \"i\", output = \"v\" }\nset = { i = 0.5 }\nsteady_state = true";
+    let points = frequencies(1e-2, 1e3, 20);
+    let one = table(&points, z);
+    let other = experiment.replace("0.5", "0.05");
+    let low = table(&points, |s| {
+        let r: f64 = 0.06 / (0.05 + 0.03);
+        r / (1.0 + r * 2.0 * s)
+    });
+    let second = format!(
+        "{experiment}\n[[experiment]]\ndata = \"e.csv\"\noutputs = {{ real = \"re\", imaginary = \"im\" }}\n{other}"
+    );
+    let problem = problem("M", &[("b", 0.05), ("i0", 0.02)], &second);
+    let files =
+        [("M.mo", model), ("d.csv", one.as_str()), ("e.csv", low.as_str()), ("p.toml", &problem)];
+    let (result, said) = solved(&files);
+    assert_near(parameter(&result, "b")[0], 0.06, 1e-7);
+    assert_near(parameter(&result, "i0")[0], 0.03, 1e-7);
+    assert!(said.contains("exact, by sensitivity equations"), "{said}");
+}
+
+/// Models with a formula for their spectrum; the parameter `k` is 1 in the data.
+#[test]
+fn spectra_are_those_of_the_formulas() {
+    type Formula = fn(Number) -> Number;
+    let cases: [(&str, Formula); 8] = [
+        ("der(x) = i - x; v = k*x;", |s| 1.0 / (s + 1.0)),
+        ("der(x) = i - x; der(y) = x - k*y; v = y + i;", |s| 1.0 + 1.0 / ((s + 1.0) * (s + 1.0))),
+        ("x = 0; v = k*(2*i + 3*der(i));", |s| 2.0 + 3.0 * s),
+        ("x = 0; y = der(i); v = k*(i + 0.5*der(y));", |s| 1.0 + 0.5 * s * s),
+        ("der(x) = y; der(y) = i - k*x - 0.1*y; v = x;", |s| 1.0 / (s * s + 0.1 * s + 1.0)),
+        ("der(x) = i; v = k*x + 1;", |s| 1.0 / s),
+        // An algebraic loop: z + z³ = i + x at z = 0.
+        ("der(x) = i - z; z + z^3 = i + k*x; v = z;", |s| {
+            // (s + k) x = (1 − 1) i, z = i + k x
+            1.0 + 0.0 * s
+        }),
+        ("der(x) = i - z; z + z^3 = 2*i + k*x; v = z;", |s| 2.0 - 1.0 / (s + 1.0)),
+    ];
+    for (equations, formula) in cases {
+        let unused = if equations.contains("y") { "" } else { "y = 0;" };
+        let z = if equations.contains("z") { "Real z;" } else { "" };
+        let model = format!(
+            "model M input Real i; output Real v; parameter Real k = 0.9; Real x; Real y; {z} \
+             initial equation x = 0; equation {equations} {unused} end M;"
+        );
+        let model = match equations.contains("der(x)") {
+            true => model,
+            false => model.replace("initial equation x = 0; ", ""),
+        };
+        let model = match equations.contains("der(y) =") {
+            true => model.replace("initial equation x = 0;", "initial equation x = 0; y = 0;"),
+            false => model,
+        };
+        let data = table(&frequencies(1e-3, 1e2, 15), formula);
+        let spectrum = "spectrum = { input = \"i\", output = \"v\" }";
+        let problem = problem("M", &[("k", 0.9)], spectrum);
+        let (result, said) = solved(&[("M.mo", &model), ("d.csv", &data), ("p.toml", &problem)]);
+        let off = distance(&result);
+        assert!(off < 1e-9, "{equations}: {off:e}: {said}");
+    }
+}
+
+#[test]
+fn what_has_no_spectrum_is_refused_with_the_reason() {
+    let data = table(&frequencies(1.0, 10.0, 8), |s| 1.0 / (1.0 + s));
+    let model = "model M input Real i; output Real v; parameter Real k = 1; Real x(start = 0, fixed = true); \
+        Real a; Real b; equation der(x) = i - k*x; v = x; a = der(i); b = der(a); end M;";
+    let of = |spectrum: &str| {
+        let problem = problem("M", &[("k", 1.0)], spectrum);
+        refused(&[("M.mo", model), ("d.csv", &data), ("p.toml", &problem)])
+    };
+    let said = of("spectrum = { input = \"j\", output = \"v\" }");
+    assert!(said.contains("`j` is no Real input") && said.contains("its inputs are `i`"), "{said}");
+    let said = of("spectrum = { input = \"i\", output = \"w\" }");
+    assert!(said.contains("no variable `w`"), "{said}");
+    let said = of("spectrum = { input = \"i\", output = \"v\", weighting = \"half\" }");
+    assert!(said.contains("no weighting `half`") && said.contains("\"modulus\""), "{said}");
+    let said = of("spectrum = { input = \"i\", output = \"v\", at = -1 }");
+    assert!(said.contains("operating point is at -1 s"), "{said}");
+    let third = model.replace("v = x;", "v = x + der(b);");
+    let problem = problem("M", &[("k", 1.0)], "spectrum = { input = \"i\", output = \"v\" }");
+    let said = refused(&[("M.mo", &third), ("d.csv", &data), ("p.toml", &problem)]);
+    assert!(said.contains("derivative of its input of order 3"), "{said}");
+    let phase = problem.replace("real = \"re\", imaginary = \"im\"", "phase = \"im\"");
+    let said = refused(&[("M.mo", model), ("d.csv", &data), ("p.toml", &phase)]);
+    assert!(said.contains("a phase alone") && said.contains("`magnitude`"), "{said}");
+}
+
+/// A spectrum and a load step of the same circuit, with errors of their own.
+#[test]
+fn a_spectrum_and_a_load_step_determine_more_than_either() {
+    let model = "model M input Real i(unit = \"A\"); output Real v(unit = \"V\"); \
+        parameter Real R0(unit = \"Ohm\") = 0.04; parameter Real R1(unit = \"Ohm\") = 0.2; \
+        parameter Real C(unit = \"F\") = 30; parameter Real E(unit = \"V\") = 0.9; \
+        Real u(start = 0, fixed = true); \
+        equation C*der(u) = i - u/R1; v = E - R0*i - u; end M;";
+    let [r0, r1, c, e] = [0.05, 0.3, 40.0, 1.0];
+    let spectrum = table(&frequencies(1.0, 1e3, 12), |s| r0 + r1 / (1.0 + r1 * c * s));
+    let mut step = "t,i,v\n".to_owned();
+    for k in 0..40 {
+        let t = 2.0 * f64::from(k);
+        let v = e - r0 * 0.5 - 0.5 * r1 * (1.0 - (-t / (r1 * c)).exp());
+        writeln!(step, "{t},0.5,{v:.12}").unwrap();
+    }
+    let parameters = [("R0", 0.04), ("R1", 0.2), ("C", 30.0), ("E", 0.9)];
+    let second = "spectrum = { input = \"i\", output = \"v\", factor = -1 }\n[[experiment]]\n\
+        data = \"s.csv\"\nx = { variable = \"time\", column = \"t\" }\noutputs = { v = \"v\" }\n\
+        inputs = { i = { column = \"i\", interpolation = \"hold\" } }";
+    let problem = problem("M", &parameters, second);
+    let files = [
+        ("M.mo", model),
+        ("d.csv", spectrum.as_str()),
+        ("s.csv", step.as_str()),
+        ("p.toml", &problem),
+    ];
+    let (result, _) = solved(&files);
+    for (name, value) in [("R0", r0), ("R1", r1), ("C", c), ("E", e)] {
+        assert_near(parameter(&result, name)[0], value, 1e-5);
+    }
+}
