@@ -207,6 +207,60 @@ pub fn short_fit(
     Ok((smallest(&solved.collect::<Vec<_>>()), simulations))
 }
 
+/// An output of which all values are multiplied by a factor.
+pub type Scale<'a> = (&'a str, f64);
+
+/// How well a problem may explain its data with each of these scales of an output: the largest coefficient
+/// of determination at `count` points all over the ranges, the smallest of all series. These are the
+/// simulations that it takes: other scales need none. The result is followed by their number.
+///
+/// # Errors
+///
+/// Those of the simulators' maker.
+pub fn promises(
+    problem: super::Problem,
+    (scales, count): (&[Scale<'_>], usize),
+    processors: &Processors,
+    cancel: Option<Arc<AtomicBool>>,
+) -> Result<(Vec<f64>, u64), Fault> {
+    // Multiples of the golden ratio are spread over an interval, those of its multiples over a cube.
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let mut run = Run::on(problem, processors)?;
+    run.evaluation.cancel_by(cancel);
+    let fraction = |k: usize, step: f64| ((k + 1) as f64 * step).fract();
+    let point = |k: usize| {
+        let steps = (1..).map(|own| f64::from(own) * GOLDEN);
+        let free = run.problem.parameters.iter().zip(steps);
+        free.map(|(own, step)| own.value(fraction(k, step))).collect::<Vec<f64>>()
+    };
+    let points: Vec<Vec<f64>> = (0..count).map(point).collect();
+    let rows: Vec<Vec<f64>> =
+        run.evaluation.simulate_all(&points).into_iter().filter_map(Result::ok).collect();
+    let of_scale = |(name, factor): &Scale<'_>| {
+        let of_row = |row: &Vec<f64>| {
+            let mut rest = &row[..];
+            let series = run.problem.series.iter().map(|own| {
+                let (simulated, others) = rest.split_at(own.x.len());
+                rest = others;
+                let factor = if own.y_name == *name { *factor } else { 1.0 };
+                explained(own.y.iter().map(|y| factor * y), simulated)
+            });
+            series.fold(f64::INFINITY, f64::min)
+        };
+        rows.iter().map(of_row).fold(f64::NEG_INFINITY, f64::max)
+    };
+    Ok((scales.iter().map(of_scale).collect(), count as u64))
+}
+
+/// The coefficient of determination.
+fn explained(measured: impl Iterator<Item = f64> + Clone, simulated: &[f64]) -> f64 {
+    let mean = measured.clone().sum::<f64>() / simulated.len().max(1) as f64;
+    let square = |value: f64| value * value;
+    let total: f64 = measured.clone().map(|y| square(y - mean)).sum();
+    let rest: f64 = measured.zip(simulated).map(|(y, own)| square(y - own)).sum();
+    1.0 - rest / total
+}
+
 /// The best values of least squares from these starts, and the simulations that they took; `None` where
 /// the objective is no sum of squares.
 fn best_fit(run: &Run, starts: &[Vec<f64>]) -> Result<(Option<Vec<f64>>, u64), Fault> {

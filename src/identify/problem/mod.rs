@@ -81,7 +81,7 @@ pub use journal::{
     Entry, Journal, Record, begin, decode, encode, header, is_of_another_version, without_times,
 };
 pub use linearization::Linearization;
-pub use misread::{Reading, short_fit};
+pub use misread::{Reading, promises, short_fit};
 pub use non_identifiable::Form;
 pub(crate) use non_identifiable::NonIdentifiable;
 use parts::other_shards;

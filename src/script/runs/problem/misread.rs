@@ -7,7 +7,7 @@ use super::interpolation;
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
-use crate::identify::problem::{Finding, FindingKind, Reading, Run, Solution, short_fit};
+use crate::identify::problem::{Finding, FindingKind, Reading, Run, Solution, promises, short_fit};
 
 /// Times in minutes, hours and milliseconds that are read as seconds, and a model that counts in minutes
 /// or hours.
@@ -25,8 +25,10 @@ const COLUMNS: [f64; 3] = [-1.0, 1e3, 1e-3];
 const EVALUATIONS: [u64; 2] = [60, 200];
 /// Evaluations of each fit with two changes.
 const OF_A_PAIR: u64 = 20;
-/// Fits that explain less than this count the same, when pairs of changes are put into order.
-const WORST: f64 = -1.0;
+/// Points at most at which a change is tried together with those of outputs.
+const SAMPLES: usize = 40;
+/// With fewer points for each, pairs without an output are not tried: one point says little.
+const FEW: u64 = 4;
 /// Steps of each simulation, and those for each row: an hour read as 150 days is given up.
 const STEPS: u64 = 10_000;
 const STEPS_PER_ROW: u64 = 20;
@@ -179,7 +181,9 @@ fn try_readings(
         return Ok(());
     }
     let [fewest, most] = EVALUATIONS;
-    let each = about.1.effort.evaluations / changes.len().max(1) as u64;
+    let effort = &about.1.effort;
+    let each = effort.evaluations / changes.len().max(1) as u64;
+    let before = effort.evaluations + effort.simulations_for_statistics;
     let mut fits = ShortFits { session, about, again, readings: Vec::new(), simulations: 0 };
     fits.about.0.evaluation.show("columns read otherwise");
     for changed in changes {
@@ -189,7 +193,7 @@ fn try_readings(
     }
     if !fits.about.1.is_explained_by(&fits.readings) {
         fits.about.0.evaluation.show("two columns read otherwise");
-        if !fits.fit_pairs(changes)? {
+        if !fits.fit_pairs(changes, before)? {
             return Ok(());
         }
     }
@@ -211,9 +215,8 @@ struct ShortFits<'a, 'm> {
 impl ShortFits<'_, '_> {
     /// Fits with these changes at once; `false` where the user stops the run.
     fn fit(&mut self, changes: &[&Changed], evaluations: u64) -> Result<bool, Fault> {
+        let most_steps = self.most_steps();
         let (_, solution) = &mut self.about;
-        let rows = solution.series.iter().map(|series| series.points.len() as u64).max();
-        let most_steps = STEPS + STEPS_PER_ROW * rows.unwrap_or(0);
         let change =
             |file: &mut ProblemFile| changes.iter().for_each(|own| own.apply(file, most_steps));
         let words = changes.iter().map(|own| own.words()).collect::<Vec<_>>().join(" and ");
@@ -239,38 +242,91 @@ impl ShortFits<'_, '_> {
         Ok(true)
     }
 
-    /// Fits with two changes at once, those with another unit of the times first, and then those that
-    /// explained more alone, until they have taken as many simulations as the search. `false` where the user
-    /// stops the run.
-    fn fit_pairs(&mut self, changes: &[Changed]) -> Result<bool, Fault> {
-        let alone: Vec<f64> = std::mem::take(&mut self.readings)
-            .iter()
-            .map(|own| own.r_squared.map_or(WORST, |found| found.max(WORST)))
-            .collect();
-        let numbers = 0..changes.len();
-        let mut pairs: Vec<[usize; 2]> = numbers
-            .clone()
-            .flat_map(|one| numbers.clone().skip(one + 1).map(move |other| [one, other]))
-            .filter(|[one, other]| !changes[*one].is_of_the_column_of(&changes[*other]))
-            .collect();
-        let is_of_times = |pair: &[usize; 2]| pair.iter().any(|own| changes[*own].is_of_times());
-        pairs.sort_by(|a, b| {
-            let explained = |pair: &[usize; 2]| alone[pair[0]] + alone[pair[1]];
-            let by_time = is_of_times(b).cmp(&is_of_times(a));
-            by_time.then(explained(b).total_cmp(&explained(a))).then(a.cmp(b))
-        });
-        let budget = self.simulations + self.about.1.effort.evaluations;
-        for [one, other] in pairs {
+    /// Fits with two changes at once, in the order of what they may explain, until these fits have taken as
+    /// many simulations as everything before. `false` where the user stops the run.
+    fn fit_pairs(&mut self, changes: &[Changed], most: u64) -> Result<bool, Fault> {
+        self.readings.clear();
+        let budget = self.simulations + most;
+        for [one, other] in self.promising(changes, most / 2)? {
             if self.simulations + OF_A_PAIR > budget {
                 break;
             }
             if !self.fit(&[&changes[one], &changes[other]], OF_A_PAIR)? {
                 return Ok(false);
             }
-            if self.about.1.is_explained_by(&self.readings) {
-                break;
-            }
         }
         Ok(true)
+    }
+
+    /// The pairs of changes of different columns, in the order of what they explain at points of the ranges,
+    /// for `most` simulations. Those with an output need none beside those of the other change; the rest is
+    /// left out where there are too few simulations.
+    fn promising(&mut self, changes: &[Changed], most: u64) -> Result<Vec<[usize; 2]>, Fault> {
+        let is_output = |own: usize| changes[own].role == Role::Output;
+        let differ = |one: usize, other: usize| !changes[one].is_of_the_column_of(&changes[other]);
+        let with_outputs = |one: usize| {
+            let is_pair = move |own: &usize| is_output(*own) && (*own > one || !is_output(one));
+            (0..changes.len()).filter(is_pair).filter(move |own| differ(one, *own))
+        };
+        let alone = (0..changes.len()).filter(|one| with_outputs(*one).next().is_some());
+        let mut bases: Vec<Vec<usize>> = alone.map(|one| vec![one]).collect();
+        let rest = (0..changes.len()).filter(|own| !is_output(*own)).flat_map(|one| {
+            let others = (one + 1..changes.len()).filter(|own| !is_output(*own));
+            others.filter(move |own| differ(one, *own)).map(move |own| vec![one, own])
+        });
+        let rest: Vec<Vec<usize>> = rest.collect();
+        if most >= FEW * (bases.len() + rest.len()) as u64 {
+            bases.extend(rest);
+        }
+        let count = (most as usize / bases.len().max(1)).min(SAMPLES);
+        let mut found = Vec::new();
+        for base in bases.iter().filter(|_| count > 0) {
+            let pairs: Vec<[usize; 2]> = match base.as_slice() {
+                [one, other] => vec![[*one, *other]],
+                [one] => with_outputs(*one).map(|own| [*one, own]).collect(),
+                _ => Vec::new(),
+            };
+            let scale = |pair: &[usize; 2]| match base.len() {
+                1 => (changes[pair[1]].variable.as_str(), changes[pair[1]].factor),
+                _ => ("", 1.0),
+            };
+            let scales: Vec<(&str, f64)> = pairs.iter().map(scale).collect();
+            let values = self.promises(changes, base, (&scales, count))?;
+            found.extend(values.into_iter().zip(pairs));
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        Ok(found.into_iter().map(|(_, pair)| pair).collect())
+    }
+
+    /// What the data with these changes, and with one of these scales, may explain; nothing where they
+    /// cannot be read so.
+    fn promises(
+        &mut self,
+        changes: &[Changed],
+        base: &[usize],
+        about: (&[(&str, f64)], usize),
+    ) -> Result<Vec<f64>, Fault> {
+        let most_steps = self.most_steps();
+        let change = |file: &mut ProblemFile| {
+            base.iter().for_each(|own| changes[*own].apply(file, most_steps));
+        };
+        let is_needless = about.0.is_empty() || self.session.world.interrupted();
+        let other = match is_needless {
+            true => None,
+            false => (self.again)(self.session, Change::Entries(&change)).ok(),
+        };
+        let Some(other) = other else { return Ok(Vec::new()) };
+        let (processors, flag) =
+            (self.session.world.processors(), self.session.world.interrupt_flag());
+        let (values, simulations) = promises(other.problem, about, &processors, flag)?;
+        self.simulations += simulations;
+        self.about.1.effort.simulations_for_statistics += simulations;
+        Ok(values)
+    }
+
+    /// Steps that each simulation may take.
+    fn most_steps(&self) -> u64 {
+        let rows = self.about.1.series.iter().map(|series| series.points.len() as u64).max();
+        STEPS + STEPS_PER_ROW * rows.unwrap_or(0)
     }
 }

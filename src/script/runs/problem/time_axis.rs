@@ -93,10 +93,21 @@ pub(super) fn note_unit(
     (table, notes): (&MatFile, &mut Notes),
 ) {
     let has_unit = entry.unit.is_some() || entry.factor.is_some() || column.about.unit.is_some();
+    /// Beginnings of names, and the units that they mean.
+    const NAMES: [(&str, [&str; 2]); 5] = [
+        ("hour", ["hours", "h"]),
+        ("stund", ["hours", "h"]),
+        ("day", ["days", "d"]),
+        ("tag", ["days", "d"]),
+        ("ms", ["milliseconds", "ms"]),
+    ];
     if !has_unit && table.is_table() && table.version != Version::Results {
+        let lower = name.to_lowercase();
+        let known = NAMES.iter().find(|(own, _)| lower.starts_with(own));
+        let [words, unit] = known.map_or(["minutes", "min"], |(_, unit)| *unit);
         notes.about(table, [format!(
-            "`{name}` has no unit, and is read in seconds; for minutes, write `x = {{ variable = \
-             \"time\", column = \"{name}\", unit = \"min\" }}`"
+            "`{name}` has no unit, and is read in seconds; for {words}, write `x = {{ variable = \
+             \"time\", column = \"{name}\", unit = \"{unit}\" }}`"
         )]);
     }
 }
@@ -265,6 +276,8 @@ mod tests {
         assert!(found.contains("`Time` has no unit, and is read in seconds"), "{found}");
         assert_eq!(noted("Time [min],V\n0,1\n1,2\n", "Time"), None);
         assert!(noted("time,V\n0,1\n1,2\n", "time").is_some());
+        let hours = noted("Hour,V\n0,1\n1,2\n", "Hour").unwrap();
+        assert!(hours.contains("for hours, write") && hours.contains("unit = \"h\""), "{hours}");
     }
 
     #[test]

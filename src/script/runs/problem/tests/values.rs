@@ -549,6 +549,26 @@ fn residuals_with_a_strong_pattern_condition_the_verdicts() {
     assert!(other.to_json().contains("\"verdicts_assume\": \"if the model is right\""));
 }
 
+/// Times in minutes and an output in thousandths: neither change alone explains these data.
+#[test]
+fn two_columns_that_are_read_wrongly_are_found_together() {
+    let parameters = "model = \"Valve\"\n[parameters]\nK = { fixed = 2 }\n\
+                      T = { min = 0.5, max = 100 }";
+    let experiment = "x = { variable = \"time\", column = \"Zeit\" }\noutputs = { y = \"y\" }\n\
+                      inputs = { open = \"open\", level = \"level\" }";
+    let row = |k: u32| {
+        let t = f64::from(k) / 4.0;
+        format!("{},{},2,{}\n", t / 60.0, (1.0..3.0).contains(&t), 1e-3 * opened(t, 2.0))
+    };
+    let data = "Zeit,open,level,y\n".to_owned() + &(0..17).map(row).collect::<String>();
+    let solution = found(parameters, experiment, &data).unwrap();
+    let text = solution.text();
+    let pair = "the times `Zeit` multiplied by 60, as if they were in minutes and the column `y` \
+                (output `y`) multiplied by 1000";
+    assert!(text.contains(pair), "{text}");
+    assert!(text.contains("`Zeit` has no unit, and is read in seconds"), "{text}");
+}
+
 #[test]
 fn parameters_without_effect_are_no_missed_minimum() {
     let parameters = "model = \"Valve\"\n[parameters]\nK = { min = 0.1, max = 10 }\n\
