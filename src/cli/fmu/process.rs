@@ -109,7 +109,12 @@ impl WorkerProcess {
         let is_missing = |printed: &mut Printed| printed.answers < self.received;
         let waited = self.printed.1.wait_timeout_while(printed, LAST_WORDS, is_missing);
         let (mut printed, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        let message = |text| LogMessage { is_problem: false, category: "printed".to_owned(), text };
+        let message = |text| LogMessage {
+            is_problem: false,
+            category: "printed".to_owned(),
+            text,
+            is_last_of_many: false,
+        };
         printed.lines.drain(..).map(message).collect()
     }
 

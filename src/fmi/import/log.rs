@@ -16,10 +16,11 @@ impl Log {
     /// Keeps a message.
     pub fn add(&self, is_problem: bool, category: &str, text: &str) {
         let text: String = text.trim().chars().take(LONGEST).collect();
-        let message = LogMessage { is_problem, category: category.to_owned(), text };
+        let category = category.to_owned();
+        let message = LogMessage { is_problem, category, text, is_last_of_many: false };
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if all.len() < MOST_MESSAGES && !message.text.is_empty() && !all.contains(&message) {
-            all.push(message);
+        if all.len() < MOST_MESSAGES && !message.text.is_empty() {
+            message.add_to(&mut all);
         }
     }
 

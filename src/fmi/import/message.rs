@@ -13,9 +13,34 @@ pub struct LogMessage {
     pub category: String,
     /// The text.
     pub text: String,
+    /// Whether it is the last of more messages than are kept, which differ in numbers alone.
+    pub is_last_of_many: bool,
 }
 
+/// Messages that differ in numbers alone and are kept: units say at which time a step was refused, and steps
+/// are refused by the thousand.
+const MOST_ALIKE: usize = 3;
+
 impl LogMessage {
+    /// Adds the message to others, each once; of warnings and errors that differ in numbers alone the first
+    /// ones and the last one are kept.
+    pub(super) fn add_to(self, all: &mut Vec<LogMessage>) {
+        let is_of_kind =
+            |own: &&LogMessage| own.is_problem == self.is_problem && own.category == self.category;
+        if all.iter().filter(is_of_kind).any(|own| own.text == self.text) {
+            return;
+        }
+        let words = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
+        let is_like = |own: &LogMessage| {
+            self.is_problem && is_of_kind(&own) && words(&own.text) == words(&self.text)
+        };
+        let alike: Vec<usize> = (0..all.len()).filter(|at| is_like(&all[*at])).collect();
+        let last = alike.last().filter(|_| alike.len() >= MOST_ALIKE);
+        let is_last_of_many = self.is_last_of_many || last.is_some();
+        last.into_iter().for_each(|at| drop(all.remove(*at)));
+        all.push(LogMessage { is_last_of_many, ..self });
+    }
+
     /// The message with the names of variables in the place of their value references (FMI 2.0.5 §2.1.5):
     /// `#r12#` is the Real with the reference 12, and `##` is `#`. What is neither stays as it is.
     pub(super) fn named(self, description: &Description) -> LogMessage {
@@ -64,6 +89,27 @@ mod tests {
     use super::*;
     use crate::description::Variable;
 
+    fn message(text: &str) -> LogMessage {
+        let (category, text) = ("logAll".to_owned(), text.to_owned());
+        LogMessage { is_problem: true, category, text, is_last_of_many: false }
+    }
+
+    #[test]
+    fn of_messages_that_differ_in_numbers_the_first_and_the_last_are_kept() {
+        let mut all = Vec::new();
+        for time in [1, 1, 2, 3, 20, 100] {
+            message(&format!("no value at t = {time}.5")).add_to(&mut all);
+            message("dry").add_to(&mut all);
+        }
+        let kept: Vec<&str> = all.iter().map(|own| own.text.as_str()).collect();
+        assert_eq!(
+            kept,
+            ["no value at t = 1.5", "dry", "no value at t = 2.5", "no value at t = 100.5"]
+        );
+        let last: Vec<bool> = all.iter().map(|own| own.is_last_of_many).collect();
+        assert_eq!(last, [false, false, false, true]);
+    }
+
     #[test]
     fn value_references_become_names() {
         let variable = |name: &str, kind, reference| Variable {
@@ -77,12 +123,7 @@ mod tests {
         let named = |text: &str, version| {
             let description =
                 Description { version, variables: variables.clone(), ..Description::default() };
-            let message = LogMessage {
-                is_problem: true,
-                category: "logAll".to_owned(),
-                text: text.to_owned(),
-            };
-            message.named(&description).text
+            message(text).named(&description).text
         };
         for (text, expected) in [
             ("#r1365# must be positive (channel ##4)", "body.m must be positive (channel #4)"),

@@ -195,8 +195,8 @@ impl Pool {
         const MOST: usize = 100;
         let mut all = locked(&self.messages);
         for message in messages {
-            if all.len() < MOST && !all.contains(&message) {
-                all.push(message);
+            if all.len() < MOST {
+                message.add_to(&mut all);
             }
         }
     }

@@ -529,8 +529,12 @@ fn result_table(
 
 /// Notes what a unit has said, each message once.
 pub fn note_messages(session: &mut Session, unit: &Imported) {
-    for LogMessage { category, text, .. } in unit.pool.take_messages() {
+    for LogMessage { category, text, is_last_of_many, .. } in unit.pool.take_messages() {
         let category = if category.is_empty() { "message" } else { category.as_str() };
-        session.note(FMU_MESSAGE, format!("`{}` says ({category}): {text}", unit.file));
+        let more = match is_last_of_many {
+            true => "; it said so more often, with other numbers",
+            false => "",
+        };
+        session.note(FMU_MESSAGE, format!("`{}` says ({category}): {text}{more}", unit.file));
     }
 }
