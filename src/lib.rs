@@ -76,7 +76,7 @@ pub mod internals {
     //! # The crates
     //!
     //! A module owns one stage and one noun, imports only modules before it (`tests/suite/architecture` has
-    //! the table), and never changes what the stage before it made. The modules lie in eight crates, each of
+    //! the table), and never changes what the stage before it made. The modules lie in nine crates, each of
     //! which knows only those before it; this one is what programs embed, and the program `gapi`.
     //!
     //! `src/base`, what all parts share:
@@ -114,6 +114,8 @@ pub mod internals {
     //! - [`script`]: sessions and their commands;
     //! - [`packages`]: the Modelica packages that are part of the program;
     //! - [`teach`], [`lessons`]: recorded runs of the genetic algorithm; exercises with checks.
+    //!
+    //! `src/exchange`, which the command line uses: models and problems of other programs, SBML and PEtab.
     //!
     //! `src/cli`, with the feature `cli`:
     //! - `cli`: the command line, the only door outside;

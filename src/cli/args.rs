@@ -11,6 +11,7 @@ use super::fmt::FmtArgs;
 use super::fmu::FmuWorkerArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
+use super::import::ImportArgs;
 use super::journal::JournalArgs;
 use super::lesson::LessonArgs;
 use super::man::ManArgs;
@@ -68,6 +69,8 @@ pub(super) enum Command {
     Identify(IdentifyArgs),
     /// Draft a problem file from a data file and a model
     New(NewArgs),
+    /// Import a model in SBML or a problem in PEtab
+    Import(ImportArgs),
     /// Run scripts and compare their output with recorded transcripts
     Test(TestArgs),
     /// Execute statements interactively

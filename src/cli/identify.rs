@@ -4,7 +4,7 @@ use super::options::{Global, Limits};
 use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
-use super::{limits, session};
+use super::{import, limits, session};
 use crate::ga::operators;
 use crate::script::access::policy::Grant;
 use crate::script::runs::problem::{Division, RunOptions, solve};
@@ -22,6 +22,7 @@ Examples:
   gapi identify one.toml two.toml              compare two models of the same data
   gapi identify my.toml --resume               resume after Ctrl-C, a crash or a power failure
   gapi identify my.toml --watch settings.toml  change settings while it runs
+  gapi identify petab.yaml                     import a problem in PEtab to the folder petab, and run it
   gapi identify my.toml --bootstrap --shard 3/16 --out s3   one part of a large study
 
 A problem file:
@@ -56,7 +57,7 @@ fn identify_help() -> String {
 #[derive(Debug, Args)]
 #[command(after_help = identify_help())]
 pub(super) struct IdentifyArgs {
-    /// The problem file (.toml)
+    /// The problem file (.toml), or a problem in PEtab (.yaml), which is imported first
     #[arg(value_hint = ValueHint::FilePath)]
     pub problem: PathBuf,
     /// Further problem files on the same data, whose models are compared
@@ -199,6 +200,18 @@ pub(super) fn solve_one(
     let _unheard = limits::end_unheard(world.stopping());
     let mut session = session::open(global, world);
     let options = run_options(arguments);
+    let imported;
+    let problem = match import::is_petab(problem) {
+        false => problem,
+        true => {
+            let folder = import::default_folder(problem);
+            match import::imported(&mut session, problem, &folder, arguments.overwrite) {
+                Ok(path) => imported = path,
+                Err(errors) => return Ended::Not(session::failed(&mut session, errors)),
+            }
+            &imported
+        }
+    };
     session.grant_input(problem);
     if let Some(file) = &arguments.watch {
         session.world.grant(Grant::Read(file));

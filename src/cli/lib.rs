@@ -38,6 +38,7 @@ mod fmu;
 mod hangup;
 mod help;
 mod identify;
+mod import;
 mod journal;
 mod launcher;
 mod lesson;
@@ -184,6 +185,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         }
         Command::Identify(arguments) => identify::identify(arguments, &cli.global),
         Command::New(arguments) => new::new(arguments, &cli.global),
+        Command::Import(arguments) => import::import(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),
         Command::Repl(arguments) => repl::repl(arguments, &cli.global),
         Command::Help(arguments) => help::help(arguments, &Cli::command()),

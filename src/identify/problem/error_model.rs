@@ -47,6 +47,8 @@ pub enum Sigma {
     Formula(SigmaFormula),
     /// Estimated with the parameters, one for each variable.
     Estimated,
+    /// Estimated with the parameters, one for all series with this name.
+    Shared(String),
     /// Estimated likewise, because nothing was said and one variance for all would mean nothing.
     Automatic,
 }
@@ -59,13 +61,15 @@ impl Sigma {
 
     /// Whether they are estimated.
     pub fn is_estimated(&self) -> bool {
-        matches!(self, Sigma::Estimated | Sigma::Automatic)
+        matches!(self, Sigma::Estimated | Sigma::Shared(_) | Sigma::Automatic)
     }
 
     /// Weights of the points where the output is `values`.
     pub fn weights(&self, values: &[f64], weight: f64) -> Vec<f64> {
         match self {
-            Sigma::Unknown | Sigma::Estimated | Sigma::Automatic => vec![weight; values.len()],
+            Sigma::Unknown | Sigma::Estimated | Sigma::Shared(_) | Sigma::Automatic => {
+                vec![weight; values.len()]
+            }
             Sigma::Given(sigma) => sigma.iter().map(|sigma| weight / sigma).collect(),
             Sigma::Formula(formula) => {
                 values.iter().map(|y| weight / (formula.value)(*y)).collect()
@@ -149,9 +153,9 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
     let mut names: Vec<&str> = Vec::new();
     let (mut groups, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
     for own in series {
-        let group = own.sigma.is_estimated().then(|| {
-            names.iter().position(|name| *name == own.y_name).unwrap_or_else(|| {
-                names.push(&own.y_name);
+        let group = own.deviation().map(|deviation| {
+            names.iter().position(|name| *name == deviation).unwrap_or_else(|| {
+                names.push(deviation);
                 sizes.push(Vec::new());
                 names.len() - 1
             })

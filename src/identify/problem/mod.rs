@@ -207,6 +207,14 @@ impl Series {
         weights
     }
 
+    /// The name of the standard deviation that is estimated for it; series with one name share it.
+    pub(crate) fn deviation(&self) -> Option<&str> {
+        match &self.sigma {
+            Sigma::Shared(name) => Some(name),
+            sigma => sigma.is_estimated().then_some(self.y_name.as_str()),
+        }
+    }
+
     /// What the difference of each point counts, as far as it is known before the fit; a formula
     /// for sigma is taken at the measured values.
     pub fn weights(&self) -> Vec<f64> {

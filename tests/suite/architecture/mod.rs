@@ -130,6 +130,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ),
     ("fmi", &["sim", "codegen", "lower", "flatten", "units", "source", "diag"]),
     ("fmu", &["fmi", "runtime", "codegen", "sim", "source", "diag"]),
+    ("exchange", &["registry", "diag"]),
     ("teach", &["ga", "page", "plot", "diag"]),
     (
         "identify",
@@ -201,9 +202,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "fmi", "lsp", "lessons", "format", "syntax", "budget", "external", "script",
-            "identify", "teach", "runtime", "codegen", "results", "plot", "sim", "ga", "packages",
-            "registry", "name", "source", "diag",
+            "exchange", "fmi", "lsp", "lessons", "format", "syntax", "budget", "external",
+            "script", "identify", "teach", "runtime", "codegen", "results", "plot", "sim", "ga",
+            "packages", "registry", "name", "source", "diag",
         ],
     ),
 ];

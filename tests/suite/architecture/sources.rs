@@ -16,6 +16,7 @@ pub(super) type Names = Vec<String>;
 const ROOTS: &[(&str, &[&str])] = &[
     ("fmi", &[]),
     ("fmu", &[]),
+    ("exchange", &[]),
     ("identify", &[]),
     ("script", &["lessons", "packages", "teach"]),
     ("cli", &["lsp"]),

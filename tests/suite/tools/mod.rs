@@ -10,6 +10,7 @@ mod fuzzing;
 mod grants;
 mod guide;
 mod hangup;
+mod imports;
 mod lessons;
 mod limits;
 mod lsp;

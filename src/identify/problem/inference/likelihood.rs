@@ -2,7 +2,7 @@
 
 use super::PRIOR;
 use crate::elementary;
-use crate::problem::{ErrorModel, Problem, Run};
+use crate::problem::{ErrorModel, Problem, Run, Series};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -41,10 +41,7 @@ impl Likelihood {
         let of_weights: f64 =
             weights[..measured.len()].iter().map(|weight| elementary::ln(*weight)).sum();
         let error_model = ErrorModel::of(problem);
-        let mut names: Vec<&str> = data()
-            .filter(|series| series.sigma.is_estimated())
-            .map(|series| series.y_name.as_str())
-            .collect();
+        let mut names: Vec<&str> = data().filter_map(Series::deviation).collect();
         names.sort_unstable();
         names.dedup();
         let (of_residuals, deviations) = match error_model {

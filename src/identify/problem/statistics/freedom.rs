@@ -88,19 +88,17 @@ pub fn effective(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Effec
     effective
 }
 
-/// The number of the standard deviation of each point: outputs of one name share it. Empty where not all
+/// The number of the standard deviation of each point: series with one name share it. Empty where not all
 /// are estimated.
 fn groups(problem: &Problem) -> Vec<usize> {
     let mut names: Vec<&str> = Vec::new();
     let mut groups = Vec::new();
     for series in &problem.series {
-        if !series.sigma.is_estimated() {
-            return Vec::new();
-        }
-        let known = names.iter().position(|name| *name == series.y_name);
+        let Some(deviation) = series.deviation() else { return Vec::new() };
+        let known = names.iter().position(|name| *name == deviation);
         let group = known.unwrap_or(names.len());
         if known.is_none() {
-            names.push(&series.y_name);
+            names.push(deviation);
         }
         groups.extend(std::iter::repeat_n(group, series.x.len()));
     }

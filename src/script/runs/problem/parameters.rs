@@ -18,11 +18,23 @@ use crate::models::translated::Translated;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind};
-use crate::syntax::visit::Rewrite as _;
+use crate::syntax::visit::{Rewrite, rewrite_expression};
 use std::fmt::Write;
 
 /// Parts of a range at which not both values are zero.
 const INSIDE: [f64; 2] = [0.5, 0.75];
+
+/// The names in an expression.
+struct References(Vec<String>);
+
+impl Rewrite for References {
+    fn expression(&mut self, e: &mut Expression) {
+        if let ExpressionKind::Reference(_) = &e.kind {
+            self.0.push(crate::syntax::print::expression(e));
+        }
+        rewrite_expression(self, e);
+    }
+}
 
 /// An experiment whose parameters are set.
 pub(super) struct Setting<'a> {
@@ -155,7 +167,7 @@ impl Setting<'_> {
                 );
                 return Err(fault.at(place));
             }
-            let value = enclosing_class::literal(value, name, place).at(place)?;
+            let value = self.value(value, name, place)?;
             enclosing.bind(name, value, place);
         }
         for (name, value) in &entry.start {
@@ -169,10 +181,27 @@ impl Setting<'_> {
                 );
                 return Err(fault.at(place));
             }
-            let value = enclosing_class::literal(value, name, place).at(place)?;
+            let value = self.value(value, name, place)?;
             enclosing.start(name, value, place);
         }
         Ok(())
+    }
+
+    /// A value of the experiment: a string of names that `[parameters]` lists is an expression of these
+    /// parameters, another one is a String.
+    fn value(&self, value: &ValueEntry, name: &str, place: Span) -> Result<Expression, Diagnostic> {
+        if let ValueEntry::Text(text) = value
+            && let Ok(mut read) = enclosing_class::expression(text, None)
+        {
+            QuotedNames.expression(&mut read);
+            let mut names = References(Vec::new());
+            names.expression(&mut read);
+            let is_listed = |own: &String| self.file.parameters.contains_key(own);
+            if !names.0.is_empty() && names.0.iter().all(is_listed) {
+                return Ok(read);
+            }
+        }
+        enclosing_class::literal(value, name, place).at(place)
     }
 }
 

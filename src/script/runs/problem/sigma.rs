@@ -1,5 +1,5 @@
 //! The standard deviation of a measurement as the problem file gives it: a number, a column of the
-//! data, a formula of the output, or `estimate`.
+//! data, a formula of the output, `estimate`, or `estimate NAME` where outputs share it.
 
 use super::file::SigmaEntry;
 use crate::diag::Fault;
@@ -34,6 +34,9 @@ pub(super) fn sigma(
             Ok(Sigma::Given(vec![*value; rows]))
         }
         Some(SigmaEntry::Words(words)) if words == ESTIMATE => Ok(Sigma::Estimated),
+        Some(SigmaEntry::Words(words)) if shared(words).is_some() => {
+            Ok(shared(words).map_or(Sigma::Estimated, Sigma::Shared))
+        }
         Some(SigmaEntry::Words(words)) => match table.column(words) {
             Ok(column) => {
                 let wrong = column.values.iter().position(|value| *value <= 0.0);
@@ -46,6 +49,13 @@ pub(super) fn sigma(
             Err(_) => formula(name, words).map(Sigma::Formula),
         },
     }
+}
+
+/// The name in `estimate NAME`.
+fn shared(words: &str) -> Option<String> {
+    let name = words.strip_prefix(ESTIMATE)?.strip_prefix(' ')?.trim();
+    let is_name = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_');
+    is_name.then(|| name.to_owned())
 }
 
 /// Refuses what cannot be a standard deviation.

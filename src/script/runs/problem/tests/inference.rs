@@ -302,3 +302,49 @@ fn log_normal_errors_belong_to_their_output_beside_replicates() {
     let names: Vec<&str> = solution.series.iter().map(|own| own.y[0].as_str()).collect();
     assert_eq!(names, ["h", "h", "ln(q)"]);
 }
+
+/// Two constants, measured under two conditions.
+const CONSTANTS: &str = "model M\n  parameter Real p = 1;\n  parameter Real q = 1;\n  Real a = p;\n  \
+                         Real b = q;\nend M;\n";
+
+#[test]
+fn an_experiment_sets_parameters_to_expressions_of_estimated_ones() {
+    let experiment = |data: &str, set: &str| {
+        format!(
+            "[[experiment]]\ndata = \"{data}\"\nset = {{ q = \"{set}\" }}\noutputs = {{ b = {{ column = \"b\", sigma = 1 }} }}\n"
+        )
+    };
+    let problem = format!(
+        "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\np = {{ min = 0.1, max = 9 }}\n{}{}",
+        experiment("one.csv", "p"),
+        experiment("two.csv", "3*p")
+    );
+    let solution = solved(&[
+        ("p.toml", problem),
+        ("M.mo", CONSTANTS.into()),
+        ("one.csv", "time,b\n0,1\n1,3\n".into()),
+        ("two.csv", "time,b\n0,5\n1,7\n".into()),
+    ]);
+    // Σ xy/Σ x² with x = 1, 1, 3, 3.
+    assert!((value(&solution, "p") - 2.0).abs() < 1e-6, "{}", solution.text());
+}
+
+/// The sum of squares of all outputs that share a sigma divides by all their points.
+#[test]
+fn outputs_share_a_sigma_that_is_estimated() {
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+                   p = { min = -9, max = 9 }\nq = { min = -9, max = 9 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\n[experiment.outputs]\n\
+                   a = { column = \"a\", sigma = \"estimate s\" }\n\
+                   b = { column = \"b\", sigma = \"estimate s\" }\n";
+    let data = "time,a,b\n0,1,0\n1,2,4\n2,3,2\n3,2,2\n";
+    let files =
+        [("p.toml", problem.to_owned()), ("M.mo", CONSTANTS.into()), ("d.csv", data.into())];
+    let solution = solved(&files);
+    assert!((value(&solution, "p") - 2.0).abs() < 1e-6, "{}", solution.text());
+    assert!((value(&solution, "q") - 2.0).abs() < 1e-6, "{}", solution.text());
+    // 2 + 8 over 8 points: n/2 (ln 2π s² + 1).
+    let expected = 4.0 * ((std::f64::consts::TAU * 10.0 / 8.0).ln() + 1.0);
+    let found = solution.likelihood.negative_log_likelihood.unwrap();
+    assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+}

@@ -1,0 +1,406 @@
+//! Parameter estimation problems in PEtab (version 1) as a Modelica model, a problem file and tables
+//! of data.
+//!
+//! Observables become variables of the model, the parameters of their formulas its parameters. Every
+//! condition is an experiment. Noise is a number for each measurement, or a standard deviation that is
+//! estimated with the parameters (`sigma = "estimate"`).
+
+mod experiments;
+mod problem;
+mod rows;
+mod table;
+
+pub use problem::ReadFile;
+
+use crate::Refusal;
+use crate::diag::Fault;
+use crate::expression::{Context, Expression, number, printed};
+use crate::names::{Names, identifier};
+use crate::registry::BAD_OPTION;
+use crate::sbml::{self, Additions, Extended};
+use experiments::{Experiment, Measured, Noise, Reader, Sigma};
+use indexmap::IndexMap;
+use problem::Tables;
+use rows::{Observable, Parameter, Prior};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+/// A problem as files of this program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Imported {
+    /// The name of the problem file.
+    pub problem: String,
+    /// Names and contents of all files.
+    pub files: Vec<(String, String)>,
+}
+
+/// What the tables of a problem say.
+struct Problem {
+    name: String,
+    parameters: IndexMap<String, Parameter>,
+    observables: Vec<Observable>,
+    measured: Measured,
+    conditions: IndexMap<String, table::Row>,
+}
+
+/// The files of the problem `name` that a YAML file describes; `read` gives the files beside it.
+///
+/// # Errors
+///
+/// What is wrong in a file, or not supported, at its place.
+pub fn import(name: &str, yaml: &str, read: ReadFile<'_>) -> Result<Imported, Refusal> {
+    let tables = problem::read(yaml, read)?;
+    let text = read(&tables.model).map_err(|error| {
+        let message = format!("cannot read `{}`: {error}", tables.model);
+        Refusal::new(0..0, Fault::new(BAD_OPTION, message))
+    })?;
+    let model = tables.model.clone();
+    let problem = Problem::of(name, tables)?;
+    let extended = problem.model(&text).map_err(|refusal| refusal.in_file(&model))?;
+    problem.files(&extended)
+}
+
+impl Problem {
+    fn of(name: &str, tables: Tables) -> Result<Problem, Refusal> {
+        let mut parameters = IndexMap::new();
+        for row in &tables.parameters {
+            let own = rows::parameter(row)?;
+            parameters.insert(own.id.clone(), own);
+        }
+        let observables: Vec<Observable> =
+            tables.observables.iter().map(rows::observable).collect::<Result<_, _>>()?;
+        let conditions = tables.conditions;
+        let reader =
+            Reader { observables: &observables, parameters: &parameters, conditions: &conditions };
+        let measured = reader.read(&tables.measurements)?;
+        let own = Problem { name: name.to_owned(), parameters, observables, measured, conditions };
+        own.check_noise()?;
+        Ok(own)
+    }
+
+    /// Names of parameters that formulas and conditions use.
+    fn used(&self) -> Result<BTreeSet<String>, Refusal> {
+        let outputs = self.measured.outputs.iter();
+        let mut used: BTreeSet<String> = outputs.flat_map(|own| own.formula.names()).collect();
+        for row in self.conditions.values() {
+            for (column, text) in targets(row) {
+                used.insert(column.to_owned());
+                used.extend(rows::parsed(row, text)?.names());
+            }
+        }
+        Ok(used)
+    }
+
+    /// A standard deviation that is estimated means nothing else, and the same for all its outputs.
+    fn check_noise(&self) -> Result<(), Refusal> {
+        let used = self.used()?;
+        let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
+        for (place, output) in self.measured.outputs.iter().enumerate() {
+            let Noise::Estimated(name) = &output.noise else { continue };
+            let parameter = &self.parameters[name.as_str()];
+            let scale = |place: usize| {
+                self.observables[self.measured.outputs[place].observable].of_logarithm
+            };
+            let other = owners.insert(name, place).filter(|other| scale(*other) != scale(place));
+            let why = match other {
+                Some(other) => {
+                    let other = &self.measured.outputs[other].name;
+                    format!(
+                        "`{other}` and `{}`, which share it, have different transformations",
+                        output.name
+                    )
+                }
+                None if used.contains(name) => "other formulas use it as well".to_owned(),
+                None if parameter.prior.is_some() => "it has a prior".to_owned(),
+                None => continue,
+            };
+            let message = format!(
+                "`{name}` is the estimated standard deviation of an output, but {why}, which is not supported"
+            );
+            return Err(parameter.row.wrong(message));
+        }
+        Ok(())
+    }
+
+    /// Standard deviations that are estimated beside the parameters.
+    fn deviations(&self) -> BTreeSet<&str> {
+        let outputs = self.measured.outputs.iter();
+        outputs
+            .filter_map(|own| match &own.noise {
+                Noise::Estimated(name) => Some(name.as_str()),
+                Noise::Numbers => None,
+            })
+            .collect()
+    }
+
+    /// Refuses names that neither the model nor the table of parameters has.
+    fn check_names(&self, symbols: &BTreeMap<String, bool>) -> Result<(), Refusal> {
+        for output in &self.measured.outputs {
+            let observable = &self.observables[output.observable];
+            let is_known =
+                |name: &String| symbols.contains_key(name) || self.parameters.contains_key(name);
+            if let Some(name) = output.formula.names().iter().find(|name| !is_known(name)) {
+                let message = format!("`{name}` is neither in the model nor a parameter");
+                return Err(observable.row.wrong(message));
+            }
+        }
+        for row in self.conditions.values() {
+            let mut columns = targets(row).map(|(column, _)| column);
+            if let Some(column) = columns.find(|column| !symbols.contains_key(*column)) {
+                return Err(row.wrong(format!("the model has no `{column}`")));
+            }
+        }
+        Ok(())
+    }
+
+    /// What has another value in a steady state than in the simulation that follows.
+    ///
+    /// # Errors
+    ///
+    /// Initial values, which would have to be set between the two.
+    fn switched(&self, symbols: &BTreeMap<String, bool>) -> Result<Vec<String>, Refusal> {
+        let mut switched: Vec<String> = Vec::new();
+        let is_state = |column: &str| symbols.get(column) == Some(&true);
+        for experiment in &self.measured.experiments {
+            let Some(rest) = &experiment.rest else { continue };
+            let (row, rest) =
+                (&self.conditions[experiment.condition.as_str()], &self.conditions[rest.as_str()]);
+            let cells = targets(row).chain(targets(rest)).map(|(column, _)| column);
+            for column in cells {
+                if is_state(column) && row.get(column).is_some() {
+                    let message = format!(
+                        "`{column}` gets a value after the pre-equilibration, which is not supported"
+                    );
+                    return Err(row.wrong(message));
+                }
+                let differs = row.get(column) != rest.get(column) && !is_state(column);
+                if differs && !switched.iter().any(|own| own == column) {
+                    switched.push(column.to_owned());
+                }
+            }
+        }
+        Ok(switched)
+    }
+
+    /// The model with observables and parameters.
+    fn model(&self, text: &str) -> Result<Extended, Refusal> {
+        let symbols = sbml::symbols(text)?;
+        self.check_names(&symbols)?;
+        let deviations = self.deviations();
+        let parameters =
+            self.parameters.values().filter(|own| !deviations.contains(own.id.as_str()));
+        let mut set: Vec<String> = Vec::new();
+        for row in self.conditions.values() {
+            for (column, _) in targets(row) {
+                if !set.iter().any(|own| own == column) {
+                    set.push(column.to_owned());
+                }
+            }
+        }
+        let variables = self.measured.outputs.iter().map(|own| {
+            let title = self.observables[own.observable].title.clone();
+            (own.name.clone(), title, own.formula.clone())
+        });
+        sbml::extended(
+            text,
+            Additions {
+                parameters: parameters
+                    .map(|own| (own.id.clone(), own.title.clone(), own.nominal))
+                    .collect(),
+                variables: variables.collect(),
+                set,
+                rests: self.measured.experiments.iter().any(|own| own.rest.is_some()),
+                switched: self.switched(&symbols)?,
+            },
+        )
+    }
+
+    fn files(&self, extended: &Extended) -> Result<Imported, Refusal> {
+        let class = &extended.model.name;
+        let model_file = format!("{}.mo", file_name(class));
+        let mut text = String::new();
+        _ = writeln!(
+            text,
+            "# Imported from PEtab. The model has the nominal values of the parameters."
+        );
+        _ = writeln!(text, "title = {}", quoted(&self.name));
+        _ = writeln!(text, "model = {}", quoted(&identifier(class)));
+        _ = writeln!(text, "files = [{}]\n\n[parameters]", quoted(&model_file));
+        self.write_parameters(&mut text);
+        let mut files = vec![(model_file, extended.model.text.clone())];
+        let mut names = Names::default();
+        let mut data_names = Names::default();
+        for experiment in &self.measured.experiments {
+            let name = match &experiment.rest {
+                None => experiment.condition.clone(),
+                Some(rest) => format!("{} from {rest}", experiment.condition),
+            };
+            let name = names.fresh(&name);
+            let data = format!("{}.csv", data_names.fresh(&file_name(&name)));
+            let table = self.write_experiment(&mut text, (&name, &data), experiment, extended)?;
+            files.push((data, table));
+        }
+        let problem = format!("{}.toml", file_name(&self.name));
+        files.insert(0, (problem.clone(), text));
+        Ok(Imported { problem, files })
+    }
+
+    fn write_parameters(&self, text: &mut String) {
+        let deviations = self.deviations();
+        for own in self.parameters.values().filter(|own| own.estimated) {
+            if deviations.contains(own.id.as_str()) {
+                _ = writeln!(text, "# {} is the sigma of an output, and estimated as such", own.id);
+                continue;
+            }
+            let [min, max] = own.range.map(number);
+            let scale = if own.logarithmic { "log" } else { "linear" };
+            let prior = match &own.prior {
+                None => String::new(),
+                Some(Prior::Normal { mean, sd }) => {
+                    format!(", prior = {{ mean = {}, sd = {} }}", number(*mean), number(*sd))
+                }
+                Some(Prior::LogNormal { median, factor }) => {
+                    format!(
+                        ", prior = {{ median = {}, factor = {} }}",
+                        number(*median),
+                        number(*factor)
+                    )
+                }
+            };
+            let name = key(&identifier(&own.id));
+            _ = writeln!(
+                text,
+                "{name} = {{ min = {min}, max = {max}, scale = \"{scale}\"{prior} }}"
+            );
+        }
+    }
+
+    /// Writes an experiment; its table.
+    fn write_experiment(
+        &self,
+        text: &mut String,
+        (name, data): (&str, &str),
+        experiment: &Experiment,
+        extended: &Extended,
+    ) -> Result<String, Refusal> {
+        let row = &self.conditions[experiment.condition.as_str()];
+        _ = writeln!(text, "\n[[experiment]]\nname = {}\ndata = {}", quoted(name), quoted(data));
+        if let Some(title) = row.get("conditionName") {
+            _ = writeln!(text, "# {title}");
+        }
+        let rest = experiment.rest.as_ref().map(|name| &self.conditions[name.as_str()]);
+        if rest.is_some() {
+            _ = writeln!(
+                text,
+                "# It comes to rest before 0.\nstart_time = {}",
+                number(-experiment.until_rest())
+            );
+        }
+        let set = self.set(row, rest.unwrap_or(row), extended)?;
+        if !set.is_empty() {
+            _ = writeln!(text, "set = {{ {} }}", set.join(", "));
+        }
+        let (table, entries) = experiment.data(&self.measured.outputs);
+        _ = writeln!(text, "[experiment.outputs]");
+        for (place, columns, sigma) in entries {
+            let output = &self.measured.outputs[place];
+            let columns = match columns.as_slice() {
+                [one] => format!("column = {}", quoted(one)),
+                several => {
+                    let all: Vec<String> = several.iter().map(|name| quoted(name)).collect();
+                    format!("columns = [{}]", all.join(", "))
+                }
+            };
+            let sigma = match sigma {
+                Sigma::Number(value) => number(value),
+                Sigma::Column => quoted(&format!("{}_sigma", output.name)),
+                Sigma::Estimated => quoted(&self.estimated(output)),
+            };
+            let logarithm = self.observables[output.observable].of_logarithm;
+            let error = if logarithm.is_some() { ", error = \"lognormal\"" } else { "" };
+            let name = key(&identifier(&output.name));
+            _ = writeln!(text, "{name} = {{ {columns}, sigma = {sigma}{error} }}");
+        }
+        Ok(table)
+    }
+
+    /// What an experiment sets, after it was at rest in another condition.
+    fn set(
+        &self,
+        row: &table::Row,
+        rest: &table::Row,
+        extended: &Extended,
+    ) -> Result<Vec<String>, Refusal> {
+        let mut set = Vec::new();
+        for column in self.conditions.values().flat_map(targets).map(|(column, _)| column) {
+            let parameter = extended.set.get(column).map_or(column, String::as_str);
+            // Initial values are those of the steady state.
+            let is_of_rest = !extended.at_rest.contains_key(column) && row.get(column).is_none();
+            let own = if is_of_rest { rest } else { row };
+            let of_rest = extended.at_rest.get(column).map(|name| (rest, name.as_str()));
+            for (row, parameter) in [Some((own, parameter)), of_rest].into_iter().flatten() {
+                let Some(value) = row.get(column) else { continue };
+                let entry =
+                    format!("{} = {}", key(&identifier(parameter)), self.value(row, value)?);
+                if !set.contains(&entry) {
+                    set.push(entry);
+                }
+            }
+        }
+        Ok(set)
+    }
+
+    /// The sigma of an output that is estimated: with its name where others share it.
+    fn estimated(&self, output: &experiments::Output) -> String {
+        let same = self.measured.outputs.iter().filter(|other| other.noise == output.noise);
+        match &output.noise {
+            Noise::Estimated(name) if same.count() > 1 => format!("estimate {name}"),
+            _ => "estimate".to_owned(),
+        }
+    }
+
+    /// The value of a cell of a condition, as a problem file has it.
+    fn value(&self, row: &table::Row, text: &str) -> Result<String, Refusal> {
+        let own = rows::parsed(row, text)?;
+        let fixed = |name: &String| match self.parameters.get(name.as_str()) {
+            Some(own) if !own.estimated => own.nominal,
+            _ => None,
+        };
+        let values = own
+            .names()
+            .into_iter()
+            .filter_map(|name| Some((name.clone(), Expression::Number(fixed(&name)?))));
+        let own = own.substituted(&values.collect());
+        if let Some(value) = own.value() {
+            return Ok(number(value));
+        }
+        match own.names().iter().find(|name| !self.parameters.contains_key(name.as_str())) {
+            Some(name) => Err(row.wrong(format!("`{name}` is not a parameter of the problem"))),
+            None => Ok(quoted(&printed(&own, Context::Real))),
+        }
+    }
+}
+
+/// What a condition sets.
+fn targets(row: &table::Row) -> impl Iterator<Item = (&str, &str)> {
+    let is_target = |(column, _): &(&str, &str)| !["conditionId", "conditionName"].contains(column);
+    row.filled().into_iter().filter(is_target)
+}
+
+/// A string of TOML.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// A key of TOML.
+fn key(name: &str) -> String {
+    let is_bare = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_bare { name.to_owned() } else { quoted(name) }
+}
+
+/// A name for a file.
+fn file_name(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' })
+        .collect()
+}

@@ -1,0 +1,94 @@
+//! Tables of PEtab: tab-separated values with a heading.
+
+use crate::Refusal;
+use crate::diag::Fault;
+use crate::registry::BAD_OPTION;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::rc::Rc;
+
+/// A row of a table.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    file: Rc<str>,
+    place: Range<usize>,
+    columns: Rc<BTreeMap<String, usize>>,
+    cells: Vec<String>,
+}
+
+/// The rows of a table.
+///
+/// # Errors
+///
+/// Required columns that are missing.
+pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>, Refusal> {
+    let name: Rc<str> = file.into();
+    let mut columns: Option<Rc<BTreeMap<String, usize>>> = None;
+    let (mut rows, mut start) = (Vec::new(), 0);
+    for line in text.split_inclusive('\n') {
+        let place = start..start + line.trim_end().len();
+        start += line.len();
+        let line = line.trim_end_matches(['\n', '\r']);
+        let line = line.strip_prefix('\u{feff}').unwrap_or(line);
+        if line.trim().is_empty() {
+            continue;
+        }
+        let cells: Vec<String> = line.split('\t').map(cell).collect();
+        let Some(columns) = &columns else {
+            if let Some(missing) =
+                required.iter().find(|name| !cells.iter().any(|own| own == *name))
+            {
+                let fault = Fault::new(BAD_OPTION, format!("there is no column `{missing}`"));
+                return Err(Refusal::new(place, fault).in_file(file));
+            }
+            columns =
+                Some(Rc::new(cells.into_iter().enumerate().map(|(k, name)| (name, k)).collect()));
+            continue;
+        };
+        rows.push(Row { file: name.clone(), place, columns: columns.clone(), cells });
+    }
+    Ok(rows)
+}
+
+/// The content of a cell, which may be in quotation marks.
+fn cell(text: &str) -> String {
+    let text = text.trim();
+    let inner = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
+    inner.map_or_else(|| text.to_owned(), |inner| inner.replace("\"\"", "\""))
+}
+
+impl Row {
+    /// The cell of a column; `None` where it is empty, or the column is not there.
+    pub(super) fn get(&self, column: &str) -> Option<&str> {
+        let cell = self.cells.get(*self.columns.get(column)?)?.as_str();
+        (!["", "nan", "NaN", "NA"].contains(&cell)).then_some(cell)
+    }
+
+    pub(super) fn required(&self, column: &str) -> Result<&str, Refusal> {
+        self.get(column).ok_or_else(|| self.wrong(format!("`{column}` is empty")))
+    }
+
+    pub(super) fn number(&self, column: &str) -> Result<Option<f64>, Refusal> {
+        let Some(text) = self.get(column) else { return Ok(None) };
+        text.parse()
+            .map(Some)
+            .map_err(|_| self.wrong(format!("`{column}` is `{text}`, which is not a number")))
+    }
+
+    /// The columns with content, in the order of the file.
+    pub(super) fn filled(&self) -> Vec<(&str, &str)> {
+        let mut all: Vec<(&str, usize)> =
+            self.columns.iter().map(|(name, place)| (name.as_str(), *place)).collect();
+        all.sort_by_key(|(_, place)| *place);
+        all.into_iter().filter_map(|(name, _)| Some((name, self.get(name)?))).collect()
+    }
+
+    /// A fault in this row.
+    pub(super) fn wrong(&self, message: impl Into<String>) -> Refusal {
+        self.refusal(Fault::new(BAD_OPTION, message))
+    }
+
+    pub(super) fn refusal(&self, fault: Fault) -> Refusal {
+        Refusal::new(self.place.clone(), fault).in_file(&self.file)
+    }
+}
