@@ -218,9 +218,9 @@ fn triggered(own: &mut Translation<'_>, event: &Event, parts: &Parts) {
     for (target, math) in event.assignments.iter().filter(|_| event.uses_trigger_values) {
         keep(own, &identifier(&parts.values[target]), math);
     }
-    if event.delay.is_some() {
+    if event.delay.is_some() || event.persistent {
         let message =
-            format!("event {} is triggered again before its delay ends; not supported", event.id);
+            format!("event {} is triggered again before it is executed; not supported", event.id);
         lines.insert(1, format!("  assert(not pre({pending}), {message:?});"));
     }
     lines.extend([format!("  {pending} := true;"), "end when;".to_owned()]);

@@ -19,6 +19,7 @@ use crate::expression::Expression;
 use document::{Document, Kind, Quantity, Rule};
 use roles::{Role, Roles};
 use std::collections::BTreeMap;
+use translation::Translation;
 
 /// A model in Modelica.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -133,8 +134,11 @@ pub(crate) fn extended(text: &str, additions: Additions) -> Result<Extended, Ref
     }
     let name = document.id.clone();
     let initial = set.iter().filter(|(id, own)| id != own && !at_rest.contains_key(*id));
-    let initial = initial.map(|(id, own)| (id.clone(), own.clone())).collect();
-    let text = translation::translated(document, &name, &initial)?;
+    let initial: BTreeMap<String, String> =
+        initial.map(|(id, own)| (id.clone(), own.clone())).collect();
+    let mut translation = Translation::new(document, &initial)?;
+    events::translate(&mut translation)?;
+    let text = translation.finish(&name);
     Ok(Extended { model: Model { name, text }, set, at_rest })
 }
 

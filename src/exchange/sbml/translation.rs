@@ -1,7 +1,6 @@
 //! A model of SBML as Modelica text.
 
 use super::document::{Document, Kind, Quantity, Species};
-use super::events;
 use super::roles::{Role, Roles, definition, reached};
 use crate::Refusal;
 use crate::diag::Fault;
@@ -35,36 +34,6 @@ pub(super) struct Translation<'a> {
     pub(super) class: Class,
 }
 
-/// The text of the class `name`.
-pub(super) fn translated(
-    mut document: Document,
-    name: &str,
-    initial_parameters: &BTreeMap<String, String>,
-) -> Result<String, Refusal> {
-    let roles = Roles::of(&document);
-    let stored: Vec<String> = document
-        .quantities
-        .iter()
-        .filter(|own| roles.stores_amount(own))
-        .map(|own| own.id.clone())
-        .collect();
-    let amounts = stored.into_iter().map(|id| {
-        let amount = document.names.fresh(&format!("{id}_amount"));
-        (id, amount)
-    });
-    let amounts = amounts.collect();
-    let (start, bound, class) = (BTreeMap::new(), BTreeSet::new(), Class::default());
-    let mut own = Translation { document, roles, amounts, initial_parameters, start, bound, class };
-    own.check()?;
-    own.derivatives();
-    own.delays();
-    own.initial_values();
-    events::translate(&mut own)?;
-    own.quantities();
-    own.relations();
-    Ok(own.text(name))
-}
-
 /// What comes after a declaration: the name and the unit.
 fn comment(title: &str, id: &str, unit: &str) -> String {
     let title = if title == id { "" } else { title };
@@ -78,6 +47,42 @@ fn comment(title: &str, id: &str, unit: &str) -> String {
 
 pub(super) fn real(expression: &Expression) -> String {
     printed(expression, Context::Real)
+}
+
+impl<'a> Translation<'a> {
+    /// Prepares the translation.
+    ///
+    /// # Errors
+    ///
+    /// Names that nothing declares.
+    pub(super) fn new(
+        mut document: Document,
+        initial_parameters: &'a BTreeMap<String, String>,
+    ) -> Result<Translation<'a>, Refusal> {
+        let roles = Roles::of(&document);
+        let stored = document.quantities.iter().filter(|own| roles.stores_amount(own));
+        let stored: Vec<String> = stored.map(|own| own.id.clone()).collect();
+        let amounts = stored.into_iter().map(|id| {
+            let amount = document.names.fresh(&format!("{id}_amount"));
+            (id, amount)
+        });
+        let amounts = amounts.collect();
+        let (start, bound, class) = (BTreeMap::new(), BTreeSet::new(), Class::default());
+        let mut own =
+            Translation { document, roles, amounts, initial_parameters, start, bound, class };
+        own.check()?;
+        own.derivatives();
+        own.delays();
+        own.initial_values();
+        Ok(own)
+    }
+
+    /// The text of the class `name`.
+    pub(super) fn finish(mut self, name: &str) -> String {
+        self.quantities();
+        self.relations();
+        self.text(name)
+    }
 }
 
 impl Translation<'_> {
@@ -154,22 +159,25 @@ impl Translation<'_> {
             let varies = |name: &String| own.roles.get(name) != Role::Constant;
             let is_implicit = expanded
                 .any(&|part| matches!(part, Expression::Delay(_) | Expression::Derivative(_)));
-            if !is_implicit && !expanded.names().iter().any(varies) {
-                let earlier = Expression::sum(vec![Expression::Time, delay.clone().negative()]);
-                return Some(
-                    expanded.replaced(&|part| (*part == Expression::Time).then(|| earlier.clone())),
-                );
+            let earlier = Expression::sum(vec![Expression::Time, delay.clone().negative()]);
+            let assigned = own.before_start(math, &earlier);
+            if assigned.is_none() && !is_implicit && !expanded.names().iter().any(varies) {
+                return Some(at_time(&expanded, &earlier));
             }
-            if !math.any(&|part| matches!(part, Expression::Derivative(_))) {
-                return None;
-            }
+            let is_derivative = math.any(&|part| matches!(part, Expression::Derivative(_)));
+            let before = assigned.or(is_derivative.then_some(Expression::Number(0.0)))?;
             let begun =
                 Expression::call(Function::GreaterOrEqual, vec![Expression::Time, delay.clone()]);
-            Some(Expression::Piecewise(
-                vec![(part.clone(), begun)],
-                Some(Box::new(Expression::Number(0.0))),
-            ))
+            Some(Expression::Piecewise(vec![(part.clone(), begun)], Some(Box::new(before))))
         });
+    }
+
+    /// What a variable was before the start: an initial assignment that depends on time holds there, too.
+    fn before_start(&self, math: &Expression, earlier: &Expression) -> Option<Expression> {
+        let Expression::Name(name) = math else { return None };
+        let rule = self.document.initial.iter().find(|rule| rule.variable == *name)?;
+        let depends = rule.math.any(&|part| *part == Expression::Time);
+        depends.then(|| at_time(&rule.math, earlier))
     }
 
     /// The initial values of what is stored.
@@ -466,6 +474,11 @@ const FACTORIAL: &str = "  function factorial
     end for;
   end factorial;
 ";
+
+/// An expression at another time.
+fn at_time(math: &Expression, time: &Expression) -> Expression {
+    math.replaced(&|part| (*part == Expression::Time).then(|| time.clone()))
+}
 
 /// The initial value of what is stored for a species.
 fn species_start(species: &Species, value: f64, stores_amount: bool) -> Expression {

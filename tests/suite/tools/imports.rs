@@ -162,9 +162,9 @@ fn what_is_not_supported_is_refused_at_its_place() {
         ("o.tsv", "log10", "sqrt", "the transformation `sqrt` is not supported", "o.tsv:3"),
         ("o.tsv", "1_y*x", "1_y**", "is not a formula", "o.tsv:2"),
         ("p.yaml", "version: 1", "version: 2.0.0", "version 2 of PEtab is not supported", "p.yaml"),
-        ("m.xml", "rateRule", "fastRule", "`fastRule` is not supported", "m.xml:8"),
-        ("m.xml", "<ci>u</ci>", "<ci>v</ci>", "nothing declares `v`", "m.xml:8"),
-        ("m.xml", "<minus/>", "<selector/>", "the function `selector` of MathML", "m.xml:8"),
+        ("m.xml", "rateRule", "fastRule", "`fastRule` is not supported", "m.xml:9"),
+        ("m.xml", "<ci>u</ci>", "<ci>v</ci>", "nothing declares `v`", "m.xml:9"),
+        ("m.xml", "<minus/>", "<selector/>", "the function `selector` of MathML", "m.xml:9"),
     ] {
         let here = problem();
         let path = here.path().join(file);

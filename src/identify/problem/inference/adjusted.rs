@@ -7,7 +7,9 @@
 
 use super::{Constraint, PortableConstraint};
 use crate::diag::Fault;
-use crate::problem::{ErrorModel, Failed, FailureKind, Portable, Problem, Series, Sigma, Simulate};
+use crate::problem::{
+    ErrorModel, Failed, FailureKind, Portable, Problem, Series, Sigma, Simulate, likelihood,
+};
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
 use serde::{Deserialize, Serialize};
@@ -99,6 +101,12 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), (Cause, F
         let series = series.map_err(|fault| (Cause::Prior(prior.parameter), fault))?;
         problem.series.push(series);
     }
+    if let Some(last) = weighed.last().filter(|_| ErrorModel::of(problem) == ErrorModel::Estimated)
+    {
+        // The likelihood counts the points of the priors as well.
+        let all = likelihood(&problem.series, problem.noise);
+        problem.objectives[0].1 = all.map_err(|fault| (Cause::Prior(last.parameter), fault))?;
+    }
     problem.inference.priors = added.priors;
     problem.inference.logarithmic = added.logarithmic;
     problem.inference.constraints.clone_from(&added.constraints);
@@ -116,19 +124,20 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), (Cause, F
     Ok(())
 }
 
-/// Refuses priors where the measured points have no known weight.
+/// Refuses priors where the measured points have no weight of their own.
 fn weighable(problem: &Problem) -> Result<(), Fault> {
-    if ErrorModel::of(problem) != ErrorModel::Known {
+    let (error_model, objective) = (ErrorModel::of(problem), &problem.objectives[0].0);
+    if error_model == ErrorModel::OneVariance {
         bail!(
             BAD_OPTION,
             "a prior must be weighted against the data, but the standard deviations of the data \
              are unknown";
-            help: "give `sigma` for every output"
+            help: "give `sigma` for every output, or `sigma = \"estimate\"`"
         );
     }
-    if problem.objectives[0].0 != "sum_of_squares" {
-        bail!(BAD_OPTION, "`{}` cannot be weighted against a \
-                           prior", problem.objectives[0].0; help: "minimize `sum_of_squares`");
+    if error_model == ErrorModel::Known && objective != "sum_of_squares" {
+        bail!(BAD_OPTION, "`{objective}` cannot be weighted against a \
+                           prior"; help: "minimize `sum_of_squares`");
     }
     Ok(())
 }

@@ -348,3 +348,22 @@ fn outputs_share_a_sigma_that_is_estimated() {
     let found = solution.likelihood.negative_log_likelihood.unwrap();
     assert!((found - expected).abs() < 1e-6, "{found} {expected}");
 }
+
+/// Where the derivative of n/2 ln Σ (y - p)² + (p - m)²/(2 s²) is zero.
+#[test]
+fn a_prior_is_weighed_against_a_sigma_that_is_estimated() {
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+                   p = { min = -9, max = 9, prior = { mean = 0, sd = 0.5 } }\n\
+                   [[experiment]]\ndata = \"d.csv\"\n\
+                   outputs = { a = { column = \"a\", sigma = \"estimate\" } }\n";
+    let measured = [1.0, 2.0, 3.0, 2.5];
+    let data = "time,a\n0,1\n1,2\n2,3\n3,2.5\n";
+    let files =
+        [("p.toml", problem.to_owned()), ("M.mo", CONSTANTS.into()), ("d.csv", data.into())];
+    let solution = solved(&files);
+    let p = value(&solution, "p");
+    let square: f64 = measured.iter().map(|y| (y - p) * (y - p)).sum();
+    let sum: f64 = measured.iter().map(|y| y - p).sum();
+    let derivative = -4.0 * sum / square + p / 0.25;
+    assert!(derivative.abs() < 1e-4, "{derivative}\n{}", solution.text());
+}
