@@ -105,7 +105,8 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), (Cause, F
     {
         // The likelihood counts the points of the priors as well.
         let all = likelihood(&problem.series, problem.noise);
-        problem.objectives[0].1 = all.map_err(|fault| (Cause::Prior(last.parameter), fault))?;
+        problem.objectives[0].1 =
+            all.map_err(|(_, fault)| (Cause::Prior(last.parameter), fault))?;
     }
     problem.inference.priors = added.priors;
     problem.inference.logarithmic = added.logarithmic;
