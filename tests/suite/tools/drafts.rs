@@ -59,6 +59,7 @@ fn a_building_has_dates_decimal_commas_and_two_temperatures() {
         "column = \"Zeitstempel\"",
     ];
     let text = drafted(&(head.to_owned() + &table), model, &entries);
+    assert!(!text.contains("converted to degC"), "°C is degC: {text}");
     let initial = text.lines().find(|line| line.starts_with("Ti0")).unwrap();
     assert!(initial.contains("around the first measured value"), "{initial}");
 }

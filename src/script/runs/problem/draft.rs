@@ -449,7 +449,7 @@ fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
         name => super::flat::unit_in(flat, name),
     };
     match (&column.unit, unit.as_str()) {
-        (Some(given), unit) if !unit.is_empty() && given != unit => {
+        (Some(given), unit) if !unit.is_empty() && written(given) != written(unit) => {
             format!("; converted to {unit}")
         }
         (None, unit) if !unit.is_empty() => {

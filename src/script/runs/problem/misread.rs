@@ -28,7 +28,7 @@ const OF_A_PAIR: u64 = 20;
 /// Points at most at which a change is tried together with those of outputs.
 const SAMPLES: usize = 40;
 /// With fewer points for each, pairs without an output are not tried: one point says little.
-const FEW: u64 = 4;
+const FEW: u64 = 2;
 /// Steps of each simulation, and those for each row: an hour read as 150 days is given up.
 const STEPS: u64 = 10_000;
 const STEPS_PER_ROW: u64 = 20;
