@@ -257,3 +257,52 @@ fn call(name: &str, mut arguments: Vec<Expression>) -> Result<Expression, String
         (name, count) => return Err(format!("`{name}` with {count} arguments is not supported")),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::{Context, printed};
+
+    #[test]
+    fn formulas_are_printed_with_the_same_meaning() {
+        for (text, expected) in [
+            ("a - (b - c)", "a - (b - c)"),
+            ("-a^2", "-a^2"),
+            ("(-a)^2", "(-a)^2"),
+            ("a/(b*c)", "a/(b*c)"),
+            ("a/b/c", "a/b/c"),
+            ("2^-b", "2^(-b)"),
+            ("a**b**c", "a^(b^c)"),
+            ("log10(a) + ln(b)", "log10(a) + log(b)"),
+            ("log(a, 2)", "log(a)/log(2)"),
+            ("piecewise(1, a < 2, 3)", "if a < 2 then 1 else 3"),
+            ("2*piecewise(1, a < 2 && b > 1, 3)", "2*(if a < 2 and b > 1 then 1 else 3)"),
+            ("1.5e-3*time", "0.0015*time"),
+            ("end + der", "'end' + 'der'"),
+        ] {
+            let own = formula(text).unwrap();
+            assert_eq!(printed(&own, Context::Real), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_formula_is_refused() {
+        for text in ["", "a +", "a b", "(a", "f(a)", "1.2.3", "a $ b", "min()"] {
+            assert!(formula(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn simplified_formulas_have_no_zeros_and_ones() {
+        for (text, expected) in [
+            ("a + 0", "a"),
+            ("1*a*1", "a"),
+            ("0*a + b", "b"),
+            ("a/1 - 0", "a"),
+            ("2*3 + a", "6 + a"),
+        ] {
+            let own = formula(text).unwrap().simplified();
+            assert_eq!(printed(&own, Context::Real), expected, "{text}");
+        }
+    }
+}
