@@ -121,8 +121,8 @@ pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
 }
 
 /// Endings of files that hold text in columns.
-const TABLES: [&str; 12] =
-    ["csv", "tsv", "txt", "dat", "dta", "mpt", "asc", "prn", "tab", "log", "xy", "out"];
+const TABLES: [&str; 13] =
+    ["csv", "tsv", "txt", "dat", "dta", "mpt", "asc", "prn", "tab", "log", "xy", "out", "z"];
 
 /// The part of a file's name after its last point, in lower case.
 fn ending(file_name: &str) -> String {

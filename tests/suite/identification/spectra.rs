@@ -213,6 +213,48 @@ fn spectra_are_those_of_the_formulas() {
     }
 }
 
+/// The elements of `GAPILib.Impedance` are as near to their formulas as their documentation says.
+#[test]
+fn elements_have_the_impedance_of_their_formulas() {
+    type Formula = fn(Number) -> Number;
+    let cases: [(&str, Formula, f64); 3] = [
+        (
+            "ConstantPhaseElement g(Q = k, alpha = 0.7, fMin = 1e-4, fMax = 1e6)",
+            |s| s.powf(-0.7),
+            2e-9,
+        ),
+        (
+            "FiniteLengthDiffusion g(R = k, tau = 5)",
+            |s| {
+                let root = (5.0 * s).sqrt();
+                root.tanh() / root
+            },
+            1e-6,
+        ),
+        (
+            "FiniteSpaceDiffusion g(R = k, tau = 5)",
+            |s| {
+                let root = (5.0 * s).sqrt();
+                1.0 / (root.tanh() * root)
+            },
+            1e-6,
+        ),
+    ];
+    for (element, formula, tolerance) in cases {
+        let k = if element.starts_with('C') { "1/k" } else { "k" };
+        let element = element.replace("= k", &format!("= {k}"));
+        let model = format!(
+            "model M input Real i; output Real v; parameter Real k = 0.9; \
+             GAPILib.Impedance.{element}; equation g.i = i; v = g.v; end M;"
+        );
+        let data = table(&frequencies(1e-3, 1e5, 17), formula);
+        let problem = problem("M", &[("k", 0.9)], "spectrum = { input = \"i\", output = \"v\" }");
+        let (result, said) = solved(&[("M.mo", &model), ("d.csv", &data), ("p.toml", &problem)]);
+        let off = distance(&result);
+        assert!(off < tolerance, "{element}: {off:e}: {said}");
+    }
+}
+
 #[test]
 fn what_has_no_spectrum_is_refused_with_the_reason() {
     let data = table(&frequencies(1.0, 10.0, 8), |s| 1.0 / (1.0 + s));

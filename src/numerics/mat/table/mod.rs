@@ -8,6 +8,7 @@
 
 mod column;
 mod decode;
+mod instruments;
 mod layout;
 mod moment;
 mod number;
@@ -68,7 +69,7 @@ impl Places {
 /// `bad-table`: no table, no names, rows that are shorter or longer than the head. Faults name line
 /// and column.
 pub fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
-    let text = decode::lines_of(bytes)?;
+    let text = instruments::table_of(decode::lines_of(bytes)?);
     let separator = layout::separator(&text);
     let records = records::records(&text, separator);
     let places = Places::Lines { commas: separator == Separator::Mark(',') };

@@ -9,7 +9,7 @@ use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::elementary;
 use crate::frequency::Number;
-use crate::identify::problem::Series;
+use crate::identify::problem::{Observation, Series, Sigma};
 use crate::identify::{CompiledModel, PARTS, Spectrum, SpectrumModel, significant};
 use crate::kramers_kronig;
 use crate::mat::MatFile;
@@ -83,7 +83,8 @@ pub(super) fn build(
     let (mut experiment, mut series) =
         source.compare(session, subject, (&abscissa, &class.observed), notes)?;
     experiment.settings.start = 0.0;
-    refuse_frequencies(&series).map_err(|fault| there(fault, &["data"]))?;
+    omit_constant(&mut experiment.observations, &mut series, notes)
+        .map_err(|fault| there(fault, &["x"]))?;
     read.finish(&mut series, notes).map_err(|fault| there(fault, &["outputs"]))?;
     for (observation, series) in experiment.observations.iter_mut().zip(&series) {
         observation.y_name.clone_from(&series.y_name);
@@ -212,11 +213,40 @@ fn quoted(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-fn refuse_frequencies(series: &[Series]) -> Result<(), Fault> {
-    for own in series {
-        if let Some(at) = own.x.iter().position(|x| *x <= 0.0) {
-            bail!(BAD_OPTION, "the frequency in row {} of {} is {}", own.rows[at], own.file, own.x[at]; help: "frequencies are positive; leave the cell empty to omit the point")
+/// Leaves out points without a frequency, which instruments write before a measurement.
+fn omit_constant(
+    observations: &mut [Observation],
+    series: &mut [Series],
+    notes: &mut Notes,
+) -> Result<(), Fault> {
+    for (observation, own) in observations.iter_mut().zip(series) {
+        let keeps: Vec<bool> = own.x.iter().map(|x| *x > 0.0).collect();
+        let omitted = keeps.iter().filter(|keeps| !**keeps).count();
+        if omitted == 0 {
+            continue;
         }
+        if omitted == keeps.len() {
+            bail!(BAD_OPTION, "no frequency in {} is positive", own.file; help: "check the column of frequencies")
+        }
+        notes.add(format!(
+            "{}: {omitted} rows without a positive frequency are left out",
+            own.experiment
+        ));
+        let kept = |values: &[f64]| -> Vec<f64> {
+            values
+                .iter()
+                .zip(&keeps)
+                .filter(|(_, keeps)| **keeps)
+                .map(|(value, _)| *value)
+                .collect()
+        };
+        (own.x, own.y) = (kept(&own.x), kept(&own.y));
+        let rows = own.rows.iter().zip(&keeps).filter(|(_, keeps)| **keeps);
+        own.rows = rows.map(|(row, _)| *row).collect();
+        if let Sigma::Given(sigma) = &mut own.sigma {
+            *sigma = kept(sigma);
+        }
+        observation.x.clone_from(&own.x);
     }
     Ok(())
 }
