@@ -241,7 +241,8 @@ impl Experiment {
         let mut times: Vec<f64> = self.points.iter().map(|point| point.time).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let mut heading = vec!["time".to_owned()];
+        // Time has the unit of the model, which Modelica takes as seconds.
+        let mut heading = vec!["time [s]".to_owned()];
         let mut cells: Vec<Vec<String>> = times.iter().map(|time| vec![number(*time)]).collect();
         let mut entries = Vec::new();
         let mut add = |name: &str, column: &BTreeMap<u64, [f64; 2]>, k: usize| {
