@@ -120,9 +120,14 @@ mod tests {
         value.into()
     }
 
+    fn tanh(root: Number) -> Number {
+        let small = (-2.0 * root).exp();
+        (1.0 - small) / (1.0 + small)
+    }
+
     fn diffusion(s: Number) -> Number {
         let root = (s * 5.0).sqrt();
-        0.05 + parallel(r(0.1), element(0.01, s, 0.9)) + 0.3 * root.tanh() / root
+        0.05 + parallel(r(0.1), element(0.01, s, 0.9)) + 0.3 * tanh(root) / root
     }
 
     fn arc(s: Number) -> Number {
@@ -137,7 +142,7 @@ mod tests {
         diffusion,
         |s| {
             let root = (s * 5.0).sqrt();
-            0.05 + parallel(r(0.1), element(0.01, s, 0.9)) + 0.3 / (root * root.tanh())
+            0.05 + parallel(r(0.1), element(0.01, s, 0.9)) + 0.3 / (root * tanh(root))
         },
         |s| 0.05 + 1e-6 * s + parallel(r(0.2), element(0.01, s, 0.9)),
         |s| 0.05 + parallel(parallel(r(0.3), element(1e-3, s, 1.0)), 0.5 + 2.0 * s),

@@ -53,7 +53,15 @@ mod tests {
         let names = list(&inner).expect("a folder");
         assert_eq!(
             names,
-            ["Basics", "Experiment.mo", "Free.mo", "Problem.mo", "package.mo", "package.order"]
+            [
+                "Basics",
+                "Experiment.mo",
+                "Free.mo",
+                "Impedance",
+                "Problem.mo",
+                "package.mo",
+                "package.order"
+            ]
         );
         let text = read(&inner.join("package.mo")).expect("a file");
         assert!(text.starts_with(b"package GAPILib"));

@@ -65,10 +65,17 @@ impl Problem {
         let mut parameters = IndexMap::new();
         for row in &tables.parameters {
             let own = rows::parameter(row)?;
-            parameters.insert(own.id.clone(), own);
+            if parameters.insert(own.id.clone(), own).is_some() {
+                return Err(row.wrong("a row above has the same parameter"));
+            }
         }
         let observables: Vec<Observable> =
             tables.observables.iter().map(rows::observable).collect::<Result<_, _>>()?;
+        for (place, own) in observables.iter().enumerate() {
+            if observables[..place].iter().any(|other| other.id == own.id) {
+                return Err(own.row.wrong("a row above has the same observable"));
+            }
+        }
         let conditions = tables.conditions;
         let reader =
             Reader { observables: &observables, parameters: &parameters, conditions: &conditions };
@@ -137,6 +144,10 @@ impl Problem {
     fn check_names(&self, symbols: &BTreeMap<String, bool>) -> Result<(), Refusal> {
         for output in &self.measured.outputs {
             let observable = &self.observables[output.observable];
+            if symbols.contains_key(&output.name) || output.name == "time" {
+                let message = format!("`{}` is the name of an element of the model", output.name);
+                return Err(observable.row.wrong(message));
+            }
             let is_known =
                 |name: &String| symbols.contains_key(name) || self.parameters.contains_key(name);
             if let Some(name) = output.formula.names().iter().find(|name| !is_known(name)) {
@@ -186,6 +197,14 @@ impl Problem {
     fn model(&self, text: &str) -> Result<Extended, Refusal> {
         let symbols = sbml::symbols(text)?;
         self.check_names(&symbols)?;
+        let mentioned = sbml::mentioned(text)?;
+        for name in self.deviations().into_iter().filter(|name| mentioned.contains(*name)) {
+            let message = format!(
+                "`{name}` is the estimated standard deviation of an output, but the model uses it as \
+                 well, which is not supported"
+            );
+            return Err(self.parameters[name].row.wrong(message));
+        }
         let deviations = self.deviations();
         let parameters =
             self.parameters.values().filter(|own| !deviations.contains(own.id.as_str()));

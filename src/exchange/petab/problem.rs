@@ -75,7 +75,11 @@ pub(super) fn read(yaml: &str, file: ReadFile<'_>) -> Result<Tables, Refusal> {
     let measurements = all(problem, "measurement_files", &required)?;
     let mut conditions = IndexMap::new();
     for row in all(problem, "condition_files", &["conditionId"])? {
-        conditions.insert(row.required("conditionId")?.to_owned(), row);
+        let name = row.required("conditionId")?.to_owned();
+        if conditions.contains_key(&name) {
+            return Err(row.wrong("a row above has the same condition"));
+        }
+        conditions.insert(name, row);
     }
     Ok(Tables { model: model.clone(), parameters, conditions, observables, measurements })
 }

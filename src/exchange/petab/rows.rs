@@ -64,7 +64,13 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
             None => Ok(f64::NAN),
         }
     };
-    let range = [limit("lowerBound")?, limit("upperBound")?];
+    let mut range = [limit("lowerBound")?, limit("upperBound")?];
+    if let Some([lower, upper]) = uniform(row, scale)?.filter(|_| estimated) {
+        range = [range[0].max(lower), range[1].min(upper)];
+        if range[0] >= range[1] {
+            return Err(row.wrong(format!("the prior of `{id}` lies outside its bounds")));
+        }
+    }
     Ok(Parameter {
         title: row.get("parameterName").unwrap_or_default().to_owned(),
         logarithmic: scale != "lin",
@@ -75,6 +81,26 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         row: row.clone(),
         id,
     })
+}
+
+/// The range of a uniform prior, which is constant within it.
+fn uniform(row: &Row, scale: &str) -> Result<Option<[f64; 2]>, Refusal> {
+    let kind = row.get("objectivePriorType").unwrap_or_default();
+    let on_scale = kind == "parameterScaleUniform";
+    let text = row.get("objectivePriorParameters").unwrap_or_default();
+    if !(on_scale || kind == "uniform" && scale == "lin") || text.is_empty() {
+        return Ok(None);
+    }
+    let numbers: Vec<f64> = text.split(';').filter_map(|part| part.trim().parse().ok()).collect();
+    let [lower, upper] = numbers[..] else {
+        return Err(row.wrong(format!("the prior `{kind}` needs two numbers, not `{text}`")));
+    };
+    let unit = match scale {
+        "log10" => LN_10,
+        "log" => 1.0,
+        _ => return Ok(Some([lower, upper])),
+    };
+    Ok(Some([lower, upper].map(|value| crate::elementary::exp(value * unit))))
 }
 
 fn prior(row: &Row, scale: &str) -> Result<Option<Prior>, Refusal> {

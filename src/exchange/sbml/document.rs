@@ -171,15 +171,30 @@ fn place(element: &Element<'_, '_>) -> Place {
     element.refusal(Fault::new(BAD_OPTION, "")).place
 }
 
-/// The model in the text of a document.
-pub(super) fn read(text: &str) -> Result<Document, Refusal> {
-    let xml = Xml::parse(text).map_err(|error| {
+fn parsed(text: &str) -> Result<Xml<'_>, Refusal> {
+    Xml::parse(text).map_err(|error| {
         let position = error.pos();
         let line = text.split_inclusive('\n').take(position.row.saturating_sub(1) as usize);
         let start = line.map(str::len).sum::<usize>().min(text.len());
         let fault = Fault::new(BAD_OPTION, format!("the file is not well-formed XML: {error}"));
         Refusal::new(start..start, fault)
-    })?;
+    })
+}
+
+/// The names that the formulas of a model mention.
+///
+/// # Errors
+///
+/// Text that is not XML.
+pub(crate) fn mentioned(text: &str) -> Result<BTreeSet<String>, Refusal> {
+    let xml = parsed(text)?;
+    let names = xml.descendants().filter(|node| node.tag_name().name() == "ci");
+    Ok(names.filter_map(|node| Some(node.text()?.trim().to_owned())).collect())
+}
+
+/// The model in the text of a document.
+pub(super) fn read(text: &str) -> Result<Document, Refusal> {
+    let xml = parsed(text)?;
     let root = Element(xml.root_element());
     if root.name() != "sbml" {
         return Err(root.wrong(format!("the element is `{}`, not `sbml`", root.name())));

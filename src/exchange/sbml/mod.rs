@@ -21,6 +21,8 @@ use roles::{Role, Roles};
 use std::collections::BTreeMap;
 use translation::Translation;
 
+pub(crate) use document::mentioned;
+
 /// A model in Modelica.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Model {

@@ -24,6 +24,7 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/export_fmu.rs", "Read", 1),
     ("cli/check/imported.rs", "Read", 1),
     ("cli/identify.rs", "Read", 1),
+    ("cli/import.rs", "Read", 1),
     ("cli/new.rs", "Named", 1),
     ("cli/repl/commands.rs", "Named", 1),
     ("cli/report.rs", "Own", 1),

@@ -154,6 +154,24 @@ fn a_problem_in_petab_is_imported_and_solved() {
     assert!(code == 1 && errors.contains("is there with another content"), "{errors}");
 }
 
+/// A uniform prior on the scale log10 from -1 to 0, within bounds that are wider.
+#[test]
+fn uniform_priors_narrow_the_range() {
+    let here = problem();
+    let path = here.path().join("p.tsv");
+    let text = PARAMETERS
+        .replacen("\testimate\n", "\testimate\tobjectivePriorType\tobjectivePriorParameters\n", 1)
+        .replacen("\t100\t1\t1\n", "\t100\t1\t1\tparameterScaleUniform\t-1;0\n", 1);
+    fs::write(&path, text).unwrap();
+    let (code, out, errors) = gapi(&here, &["import", "p.yaml", "--out", "p"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let written = fs::read_to_string(here.path().join("p/p.toml")).unwrap();
+    let table: toml::Table = written.parse().unwrap();
+    let range = ["min", "max"].map(|end| table["parameters"]["k"][end].as_float());
+    let range = range.map(|end| end.unwrap_or(1.0));
+    assert!((range[0] - 0.1).abs() < 1e-12 && (range[1] - 1.0).abs() < 1e-12, "{written}");
+}
+
 #[test]
 fn what_is_not_supported_is_refused_at_its_place() {
     for (file, old, new, said, place) in [
@@ -162,6 +180,10 @@ fn what_is_not_supported_is_refused_at_its_place() {
         ("o.tsv", "log10", "sqrt", "the transformation `sqrt` is not supported", "o.tsv:3"),
         ("o.tsv", "1_y*x", "1_y**", "is not a formula", "o.tsv:2"),
         ("p.yaml", "version: 1", "version: 2.0.0", "version 2 of PEtab is not supported", "p.yaml"),
+        ("o.tsv", "\t0.1", "\tk", "an output, but the model uses it as well", "p.tsv:2"),
+        ("p.tsv", "scale\tlin", "k\tlin", "a row above has the same parameter", "p.tsv:3"),
+        ("o.tsv", "logarithm\tx", "y\tx", "a row above has the same observable", "o.tsv:3"),
+        ("c.tsv", "high\tx_high", "low\tx_high", "a row above has the same condition", "c.tsv:3"),
         ("m.xml", "rateRule", "fastRule", "`fastRule` is not supported", "m.xml:9"),
         ("m.xml", "<ci>u</ci>", "<ci>v</ci>", "nothing declares `v`", "m.xml:9"),
         ("m.xml", "<minus/>", "<selector/>", "the function `selector` of MathML", "m.xml:9"),

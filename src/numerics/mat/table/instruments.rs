@@ -24,7 +24,7 @@ fn gamry(text: &str) -> Option<String> {
     let count = rows.clone().take_while(|line| line.starts_with('\t')).count();
     let mut table = "\n".repeat(begin + 1);
     for line in rows.take(count) {
-        table.push_str(&line[1..]);
+        table.push_str(line);
         table.push('\n');
     }
     (count > 2).then_some(table)

@@ -444,7 +444,9 @@ pub(super) fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
     let first = finite().fold(f64::INFINITY, f64::min);
     let last = finite().fold(f64::NEG_INFINITY, f64::max);
     let start = comparison.start;
-    if comparison.x_name == "time" && first - start > last - first && last > first {
+    let is_given = comparison.entry.start_time.is_some();
+    let is_far = first - start > last - first && last > first;
+    if comparison.x_name == "time" && is_far && !is_given {
         notes.warn(format!(
             "{}: the data begin at {first} s and last {} s, but the simulation begins at \
              {start} s; if the initial values are those of {first} s, write `start_time = \
