@@ -3,7 +3,7 @@ block ConstantPhaseElement "Impedance 1/(Q s^alpha): a distributed capacitance, 
   input Real i(unit = "A") "current";
   output Real v(unit = "V") "voltage";
   parameter Real Q(min = 0) = 1 "admittance at 1 rad/s, S.s^alpha";
-  parameter Real alpha(min = 0, max = 1) = 0.8 "exponent, between 0 and 1";
+  parameter Real alpha(min = 0, max = 1) = 0.8 "exponent, above 0 and at most 1";
   parameter Real fMin(unit = "Hz") = 1e-3 "lowest frequency of use" annotation(Evaluate = true);
   parameter Real fMax(unit = "Hz") = 1e5 "highest frequency of use" annotation(Evaluate = true);
 protected
@@ -16,12 +16,15 @@ protected
   // What lies beyond, as a geometric series each: one relaxation with the same first two moments.
   final parameter Real below = exp(-h*(1 - alpha)) "ratio of neighbouring terms of R x";
   final parameter Real below2 = exp(-h*(2 - alpha)) "the same of R x^2";
-  final parameter Real g = w[1]*x[1]*below/(1 - below) "sum of R x of the slow ones";
+  // sin(alpha pi) and the series vanish together where alpha is 0 or 1.
+  final parameter Real slow = (if 1 - alpha < 1e-9 then pi/h else sin(alpha*pi)/(1 - below)) "limit included";
+  final parameter Real fast = (if alpha < 1e-9 then pi/h else sin(alpha*pi)/(1 - above)) "limit included";
+  final parameter Real g = slow/pi*h/Q*x[1]^(1 - alpha)*below "sum of R x of the slow ones";
   final parameter Real xSlow = x[1]*below2/(1 - below2)*(1 - below)/below "their mean inverse";
   final parameter Real above = exp(-h*alpha) "ratio of neighbouring terms of R";
   final parameter Real above2 = exp(-h*(1 + alpha)) "the same of R/x";
-  final parameter Real wFast = w[n]*above/(1 - above) "sum of R of the fast ones";
-  final parameter Real xFast = x[n]*above/(1 - above)*(1 - above2)/above2 "their mean inverse";
+  final parameter Real wFast = fast/pi*h/Q*x[n]^(-alpha)*above "sum of R of the fast ones";
+  final parameter Real xFast = x[n]*above*(1 - above2)/((1 - above)*above2) "their mean inverse, infinite for alpha = 0";
   Real u[n](each start = 0, each fixed = true, each unit = "V") "voltages of the relaxations";
   Real uSlow(start = 0, fixed = true, unit = "V") "voltage of all slower ones";
   Real uFast(start = 0, fixed = true, unit = "V") "voltage of all faster ones";

@@ -73,6 +73,15 @@ impl LinearPart {
                 sorted.dae.name
             ));
         }
+        let events = &sorted.dae.events;
+        if !events.delays.is_empty() || !events.transports.is_empty() {
+            return Err(fault!(
+                NOT_LINEARIZED,
+                "`{}` cannot be linearized: `delay` and `spatialDistribution` are not supported",
+                sorted.dae.name;
+                help: "replace them by a rational approximation, such as a chain of first-order blocks"
+            ));
+        }
         let mut pool = std::mem::take(&mut sorted.dae.pool);
         let made = Made::of(&mut pool, sorted, chain, output);
         sorted.dae.pool = pool;

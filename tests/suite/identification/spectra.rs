@@ -176,6 +176,31 @@ fn the_operating_point_moves_with_the_parameters() {
     assert!(said.contains("exact, by sensitivity equations"), "{said}");
 }
 
+/// A point whose magnitude is not known has no weight: it is left out, and said to be.
+#[test]
+fn rows_without_one_part_are_left_out() {
+    let model = "model M input Real i; output Real v; parameter Real k = 0.9; \
+        Real x(start = 0, fixed = true); equation der(x) = i - k*x; v = x; end M;";
+    let exact = table(&frequencies(1e-2, 1e2, 12), |s| 1.0 / (1.0 + s));
+    let lines: Vec<&str> = exact.lines().collect();
+    let cut = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        format!("{},,{}", cells[0], cells[2])
+    };
+    let lines = lines.iter().enumerate();
+    let data: Vec<String> = lines
+        .map(|(k, line)| if k == 1 || k == 2 { cut(line) } else { (*line).to_owned() })
+        .collect();
+    let problem = problem("M", &[("k", 0.9)], "spectrum = { input = \"i\", output = \"v\" }");
+    let (result, said) =
+        solved(&[("M.mo", model), ("d.csv", &data.join("\n")), ("p.toml", &problem)]);
+    for series in result["series"].as_array().unwrap() {
+        assert_eq!(series["points"].as_array().unwrap().len(), 10, "{said}");
+    }
+    assert!(said.contains("2 rows are left out of `imaginary`"), "{said}");
+    assert!(said.contains("can be that of a linear, stationary system"), "{said}");
+}
+
 /// Models with a formula for their spectrum; the parameter `k` is 1 in the data.
 #[test]
 fn spectra_are_those_of_the_formulas() {
@@ -222,7 +247,8 @@ fn spectra_are_those_of_the_formulas() {
 #[test]
 fn elements_have_the_impedance_of_their_formulas() {
     type Formula = fn(Number) -> Number;
-    let cases: [(&str, Formula, f64); 3] = [
+    let cases: [(&str, Formula, f64); 4] = [
+        ("ConstantPhaseElement g(Q = k, alpha = 1, fMin = 1e-4, fMax = 1e6)", |s| 1.0 / s, 2e-9),
         (
             "ConstantPhaseElement g(Q = k, alpha = 0.7, fMin = 1e-4, fMax = 1e6)",
             |s| s.powf(-0.7),
@@ -278,6 +304,20 @@ fn what_has_no_spectrum_is_refused_with_the_reason() {
     assert!(said.contains("no weighting `half`") && said.contains("\"modulus\""), "{said}");
     let said = of("spectrum = { input = \"i\", output = \"v\", at = -1 }");
     assert!(said.contains("operating point is at -1 s"), "{said}");
+    let said = of("spectrum = { input = \"i\", output = \"v\", factor = 0 }");
+    assert!(said.contains("`factor` of a spectrum is 0"), "{said}");
+    let late = model.replace("v = x;", "v = x + delay(i, 0.1);");
+    let delayed = problem("M", &[("k", 1.0)], "spectrum = { input = \"i\", output = \"v\" }");
+    let said = refused(&[("M.mo", &late), ("d.csv", &data), ("p.toml", &delayed)]);
+    assert!(said.contains("`delay` and `spatialDistribution` are not supported"), "{said}");
+    let unclear = data.replace("f,re", "f [1/s],re");
+    let said = refused(&[("M.mo", model), ("d.csv", &unclear), ("p.toml", &delayed)]);
+    assert!(said.contains("may be Hz or rad/s") && said.contains("unit = \"Hz\""), "{said}");
+    let one = delayed
+        .replace("real = \"re\", ", "")
+        .replace("\"v\" }", "\"v\", weighting = \"modulus\" }");
+    let said = refused(&[("M.mo", model), ("d.csv", &data), ("p.toml", &one)]);
+    assert!(said.contains("magnitude of one part alone"), "{said}");
     let third = model.replace("v = x;", "v = x + der(b);");
     let problem = problem("M", &[("k", 1.0)], "spectrum = { input = \"i\", output = \"v\" }");
     let said = refused(&[("M.mo", &third), ("d.csv", &data), ("p.toml", &problem)]);

@@ -35,7 +35,10 @@ pub(super) fn column(entry: &ExperimentEntry, table: &MatFile) -> Result<ColumnE
     let own = x.column.as_deref().unwrap_or(FREQUENCY);
     let unit = x.unit.clone().or_else(|| table.column(own).ok().and_then(|own| own.about.unit));
     let is_angular = match unit.as_deref() {
-        Some("rad/s" | "1/s" | "s-1") => true,
+        Some("rad/s" | "rad.s-1") => true,
+        Some(unit @ ("1/s" | "s-1")) if x.factor.is_none() => {
+            bail!(BAD_OPTION, "frequencies in {unit} may be Hz or rad/s"; help: "write `x = {{ column = \"{own}\", unit = \"Hz\" }}`, or `unit = \"rad/s\"`")
+        }
         None => own.to_lowercase().starts_with("omega"),
         Some(_) => false,
     };

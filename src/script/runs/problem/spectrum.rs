@@ -2,7 +2,7 @@
 //! an operating point.
 
 use super::data::Notes;
-use super::experiment::{Built, Source, Subject};
+use super::experiment::{Built, Class, Source, Subject};
 use super::file::{Column, ExperimentEntry, SpectrumEntry};
 use super::{frequency_axis, parameters};
 use crate::Session;
@@ -13,6 +13,7 @@ use crate::identify::problem::{Observation, Series, Sigma};
 use crate::identify::{CompiledModel, PARTS, Spectrum, SpectrumModel, significant};
 use crate::kramers_kronig;
 use crate::mat::MatFile;
+use crate::models::simulation::Translated;
 use crate::models::spectrum;
 use crate::registry::BAD_OPTION;
 use crate::{bail, fault, units};
@@ -59,10 +60,7 @@ pub(super) fn build(
     let class = source.class(session, &abscissa, notes)?;
     let names = [entry.input.as_str(), entry.output.as_str()];
     let (translated, linear) = spectrum::linearized(session, &class.name, names, place)?;
-    parameters::check_free(session, source.file, &class.parameters, &translated)?;
-    parameters::check_taken(source.file, source.entry, &translated).map_err(|error| vec![error])?;
-    parameters::check_initial(session, source.file, source.entry, &translated)?;
-    parameters::note_computed(&class.parameters, &translated, notes);
+    check(session, (&source, &class), &translated, notes)?;
     let program = translated.program.clone();
     let annotated = program.experiment();
     let start = source.entry.start_time.or(annotated.start_time).unwrap_or(0.0);
@@ -73,6 +71,9 @@ pub(super) fn build(
     let model = CompiledModel::new(&source.file.model, program.clone());
     let unit = unit_of_ratio(&model, names);
     let factor = entry.factor.unwrap_or(1.0);
+    if !(factor.is_finite() && factor != 0.0) {
+        return Err(there(no_factor(factor), &["spectrum", "factor"]));
+    }
     let spectrum = Spectrum { linear, times: [start, at], factor, unit };
     let subject = Subject {
         model: Arc::new(SpectrumModel::new(model, spectrum)),
@@ -89,15 +90,37 @@ pub(super) fn build(
     for (observation, series) in experiment.observations.iter_mut().zip(&series) {
         observation.y_name.clone_from(&series.y_name);
     }
+    if weighting == Weighting::Modulus {
+        keep_complete(&mut experiment.observations, &mut series, notes)
+            .map_err(|fault| there(fault, &["outputs"]))?;
+    }
     test_kramers_kronig(&series, notes);
     weigh(&mut series, weighting);
     let error = if at > start { experiment.settings.tolerance } else { 0.0 };
     Ok(Built { experiment, series, error, program: Some(program), undecided: Vec::new() })
 }
 
+/// Refuses parameters and initial values that the model does not have.
+fn check(
+    session: &mut Session,
+    (source, class): (&Source<'_>, &Class),
+    translated: &Translated,
+    notes: &mut Notes,
+) -> Result<(), Vec<Diagnostic>> {
+    parameters::note_computed(&class.parameters, translated, notes);
+    let (file, entry) = (source.file, source.entry);
+    parameters::check_free(session, file, &class.parameters, translated)?;
+    parameters::check_taken(file, entry, translated).map_err(|error| vec![error])?;
+    parameters::check_initial(session, file, entry, translated)
+}
+
 fn too_early(at: f64, start: f64) -> Fault {
     fault!(BAD_OPTION, "the operating point is at {at} s, but the simulation begins at {start} s")
         .help("write a later `at`")
+}
+
+fn no_factor(factor: f64) -> Fault {
+    fault!(BAD_OPTION, "the `factor` of a spectrum is {factor}").help("write a number other than 0")
 }
 
 fn no_inputs() -> Fault {
@@ -131,11 +154,16 @@ fn unit_of_ratio(model: &CompiledModel, [input, output]: [&str; 2]) -> String {
 
 fn weighting(entry: &ExperimentEntry, own: &SpectrumEntry) -> Result<Weighting, Fault> {
     let has_sigma = entry.outputs.values().any(|column| column.entry().sigma.is_some());
+    let has = |name: &str| entry.outputs.contains_key(name);
+    let has_magnitude = has(MAGNITUDE) || has(PARTS[0]) && has(PARTS[1]);
     match own.weighting.as_deref() {
         Some(_) if has_sigma => {
             bail!(BAD_OPTION, "a spectrum has either `weighting` or `sigma`"; help: "remove one of them")
         }
-        None if has_sigma => Ok(Weighting::Unit),
+        None if has_sigma || !has_magnitude => Ok(Weighting::Unit),
+        Some("modulus") if !has_magnitude => {
+            bail!(BAD_OPTION, "the magnitude of one part alone is not known"; help: "add the other part, or write `weighting = \"unit\"`")
+        }
         None | Some("modulus") => Ok(Weighting::Modulus),
         Some("unit") => Ok(Weighting::Unit),
         Some("proportional") => Ok(Weighting::Proportional),
@@ -150,7 +178,7 @@ struct Read {
     /// Whether they are magnitude and phase.
     is_polar: bool,
     is_in_decibels: bool,
-    /// The column of the imaginary part is that of its negative.
+    /// The column of the imaginary part or the phase is that of its negative.
     is_negative: bool,
 }
 
@@ -172,10 +200,15 @@ fn prepared(entry: &ExperimentEntry, table: &MatFile) -> Result<(ExperimentEntry
         };
         column.change(|own| (own.factor, own.unit) = (Some(own.factor.unwrap_or(factor)), None));
     }
-    let is_negative = entry.outputs.get(PARTS[1]).map(Column::entry).is_some_and(|own| {
-        let column = own.column.as_deref().unwrap_or_default();
-        own.factor.is_none() && column.trim_start().starts_with(['-', '\u{2212}'])
-    });
+    let is_negative = |name: &str| {
+        entry.outputs.get(name).map(Column::entry).is_some_and(|own| {
+            let column = own.column.as_deref().unwrap_or_default();
+            // A factor with a sign says itself what the numbers are.
+            own.factor.is_none_or(|factor| factor > 0.0)
+                && column.trim_start().starts_with(['-', '\u{2212}'])
+        })
+    };
+    let is_negative = is_negative(PARTS[1]) || is_negative(PHASE);
     Ok((prepared, Read { is_polar, is_in_decibels, is_negative }))
 }
 
@@ -221,44 +254,70 @@ fn omit_constant(
 ) -> Result<(), Fault> {
     for (observation, own) in observations.iter_mut().zip(series) {
         let keeps: Vec<bool> = own.x.iter().map(|x| *x > 0.0).collect();
-        let omitted = keeps.iter().filter(|keeps| !**keeps).count();
-        if omitted == 0 {
-            continue;
+        if let Some(rows) = retain(&keeps, observation, own)? {
+            let why = "without a positive frequency";
+            notes.add(format!("{}: {rows} left out, {why}", own.experiment));
         }
-        if omitted == keeps.len() {
-            bail!(BAD_OPTION, "no frequency in {} is positive", own.file; help: "check the column of frequencies")
-        }
-        notes.add(format!(
-            "{}: {omitted} rows without a positive frequency are left out",
-            own.experiment
-        ));
-        let kept = |values: &[f64]| -> Vec<f64> {
-            values
-                .iter()
-                .zip(&keeps)
-                .filter(|(_, keeps)| **keeps)
-                .map(|(value, _)| *value)
-                .collect()
-        };
-        (own.x, own.y) = (kept(&own.x), kept(&own.y));
-        let rows = own.rows.iter().zip(&keeps).filter(|(_, keeps)| **keeps);
-        own.rows = rows.map(|(row, _)| *row).collect();
-        if let Sigma::Given(sigma) = &mut own.sigma {
-            *sigma = kept(sigma);
-        }
-        observation.x.clone_from(&own.x);
     }
     Ok(())
+}
+
+/// Leaves out points of which only one part was measured: their magnitude is not known.
+fn keep_complete(
+    observations: &mut [Observation],
+    series: &mut [Series],
+    notes: &mut Notes,
+) -> Result<(), Fault> {
+    let rows: Vec<Vec<usize>> = series.iter().map(|own| own.rows.clone()).collect();
+    for (observation, own) in observations.iter_mut().zip(series) {
+        let is_complete = |row: &usize| rows.iter().all(|other| other.contains(row));
+        let keeps: Vec<bool> = own.rows.iter().map(is_complete).collect();
+        if let Some(rows) = retain(&keeps, observation, own)? {
+            notes.warn(format!(
+                "{}: {rows} left out of `{}`, in which the other part is missing: the magnitude that \
+                 weights them is not known (`weighting = \"unit\"` uses them)",
+                own.experiment, own.y_name
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Keeps some points; how many rows are gone, in words, `None` where all are kept.
+fn retain(
+    keeps: &[bool],
+    observation: &mut Observation,
+    own: &mut Series,
+) -> Result<Option<String>, Fault> {
+    let omitted = keeps.iter().filter(|keeps| !**keeps).count();
+    if omitted == 0 {
+        return Ok(None);
+    }
+    if omitted == keeps.len() {
+        bail!(BAD_OPTION, "no row of {} is left to compare", own.file; help: "check the columns of frequencies and of both parts")
+    }
+    let kept = |values: &[f64]| -> Vec<f64> {
+        values.iter().zip(keeps).filter(|(_, keeps)| **keeps).map(|(value, _)| *value).collect()
+    };
+    (own.x, own.y) = (kept(&own.x), kept(&own.y));
+    let rows = own.rows.iter().zip(keeps).filter(|(_, keeps)| **keeps);
+    own.rows = rows.map(|(row, _)| *row).collect();
+    if let Sigma::Given(sigma) = &mut own.sigma {
+        *sigma = kept(sigma);
+    }
+    observation.x.clone_from(&own.x);
+    Ok(Some(if omitted == 1 { "1 row is".to_owned() } else { format!("{omitted} rows are") }))
 }
 
 impl Read {
     /// Makes real and imaginary parts of what was read.
     fn finish(&self, series: &mut [Series], notes: &mut Notes) -> Result<(), Fault> {
         for own in series.iter_mut() {
-            if self.is_negative && own.y_name == PARTS[1] {
+            if self.is_negative && [PARTS[1], PHASE].contains(&own.y_name.as_str()) {
                 own.y.iter_mut().for_each(|y| *y = -*y);
+                let part = if own.y_name == PHASE { "phase" } else { "imaginary part" };
                 notes.add(format!(
-                    "{}: `{}` holds the negative of the imaginary part, by its name",
+                    "{}: `{}` holds the negative of the {part}, by its name",
                     own.experiment, own.column
                 ));
             }
