@@ -198,7 +198,7 @@ impl Problem {
         let symbols = sbml::symbols(text)?;
         self.check_names(&symbols)?;
         let mentioned = sbml::mentioned(text)?;
-        for name in self.deviations().into_iter().filter(|name| mentioned.contains(*name)) {
+        if let Some(name) = self.deviations().into_iter().find(|name| mentioned.contains(*name)) {
             let message = format!(
                 "`{name}` is the estimated standard deviation of an output, but the model uses it as \
                  well, which is not supported"

@@ -406,10 +406,10 @@ impl Reader {
     /// A species with its stoichiometry.
     fn reference(&mut self, own: &Element<'_, '_>) -> Result<(String, Expression), Refusal> {
         let species = own.required("species")?;
-        if let Some(element) = own.child("stoichiometryMath") {
-            if let Some(math) = mathml::math(&element, &self.scope)? {
-                return Ok((species, math));
-            }
+        if let Some(element) = own.child("stoichiometryMath")
+            && let Some(math) = mathml::math(&element, &self.scope)?
+        {
+            return Ok((species, math));
         }
         let default = (self.level == 2).then_some(1.0);
         let below = own.number("denominator")?.unwrap_or(1.0);
