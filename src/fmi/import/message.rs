@@ -43,6 +43,10 @@ impl LogMessage {
 
     /// The message with the names of variables in the place of their value references (FMI 2.0.5 §2.1.5):
     /// `#r12#` is the Real with the reference 12, and `##` is `#`. What is neither stays as it is.
+    #[cfg_attr(
+        not(feature = "host"),
+        allow(dead_code, reason = "units run with the feature alone")
+    )]
     pub(super) fn named(self, description: &Description) -> LogMessage {
         if description.version != Version::V2 || !self.text.contains('#') {
             return self;
@@ -70,6 +74,7 @@ impl LogMessage {
 }
 
 /// The name of the variable that `r12` stands for.
+#[cfg_attr(not(feature = "host"), allow(dead_code, reason = "units run with the feature alone"))]
 fn variable<'d>(description: &'d Description, written: &str) -> Option<&'d str> {
     let is_kind = |kind: Kind| match written.chars().next() {
         Some('r') => kind == Kind::Float64,
