@@ -49,7 +49,7 @@ pub(super) fn read(yaml: &str, file: ReadFile<'_>) -> Result<Tables, Refusal> {
         Some(several) => {
             return Err(wrong(format!("{} problems in one file are not supported", several.len())));
         }
-        None => return Err(wrong("there is no entry `problems`: is it a file of PEtab?")),
+        None => return Err(wrong("the entry `problems` is missing: is it a file of PEtab?")),
     };
     let models = names(problem, "sbml_files");
     let [model] = models.as_slice() else {
@@ -100,6 +100,6 @@ fn version(document: &Yaml<'_>) -> Result<(), Refusal> {
     match text.as_deref().map(|text| text.split('.').next().unwrap_or_default()) {
         Some("1") => Ok(()),
         Some(other) => Err(wrong(format!("version {other} of PEtab is not supported"))),
-        None => Err(wrong("there is no entry `format_version`: is it a file of PEtab?")),
+        None => Err(wrong("the entry `format_version` is missing: is it a file of PEtab?")),
     }
 }

@@ -62,7 +62,7 @@ fn deviate(flat: &mut FlatModel, name: &str) -> Result<(), Fault> {
             [] => "declare one in the model: `input Real i;`, and connect it".to_owned(),
             inputs => format!("its inputs are {}", crate::diag::suggest::listed(inputs)),
         };
-        return Err(fault!(BAD_OPTION, "`{name}` is no Real input of the model").help(help));
+        return Err(fault!(BAD_OPTION, "`{name}` is not a Real input of the model").help(help));
     };
     let number = |value: f64| Expression::new(ExpressionKind::Real(value), Span::NONE);
     let start = input.attributes.get("start").map(|start| start.value.clone());

@@ -297,15 +297,29 @@ fn what_has_no_spectrum_is_refused_with_the_reason() {
         refused(&[("M.mo", model), ("d.csv", &data), ("p.toml", &problem)])
     };
     let said = of("spectrum = { input = \"j\", output = \"v\" }");
-    assert!(said.contains("`j` is no Real input") && said.contains("its inputs are `i`"), "{said}");
+    assert!(
+        said.contains("`j` is not a Real input") && said.contains("its inputs are `i`"),
+        "{said}"
+    );
     let said = of("spectrum = { input = \"i\", output = \"w\" }");
     assert!(said.contains("no variable `w`"), "{said}");
     let said = of("spectrum = { input = \"i\", output = \"v\", weighting = \"half\" }");
-    assert!(said.contains("no weighting `half`") && said.contains("\"modulus\""), "{said}");
+    assert!(
+        said.contains("weighting `half` is not known") && said.contains("\"modulus\""),
+        "{said}"
+    );
     let said = of("spectrum = { input = \"i\", output = \"v\", at = -1 }");
     assert!(said.contains("operating point is at -1 s"), "{said}");
     let said = of("spectrum = { input = \"i\", output = \"v\", factor = 0 }");
     assert!(said.contains("`factor` of a spectrum is 0"), "{said}");
+    let zero = "f,re,im\n1,0.5,-0.5\n2,0.2,0\n4,0.1,-0.2\n8,0.05,-0.1\n";
+    let by_part = problem(
+        "M",
+        &[("k", 1.0)],
+        "spectrum = { input = \"i\", output = \"v\", weighting = \"proportional\" }",
+    );
+    let said = refused(&[("M.mo", model), ("d.csv", zero), ("p.toml", &by_part)]);
+    assert!(said.contains("row 2") && said.contains("weights `imaginary` is 0"), "{said}");
     let late = model.replace("v = x;", "v = x + delay(i, 0.1);");
     let delayed = problem("M", &[("k", 1.0)], "spectrum = { input = \"i\", output = \"v\" }");
     let said = refused(&[("M.mo", &late), ("d.csv", &data), ("p.toml", &delayed)]);

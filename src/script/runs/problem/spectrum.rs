@@ -95,7 +95,7 @@ pub(super) fn build(
             .map_err(|fault| there(fault, &["outputs"]))?;
     }
     test_kramers_kronig(&series, notes);
-    weigh(&mut series, weighting);
+    weigh(&mut series, weighting).map_err(|fault| there(fault, &["outputs"]))?;
     let error = if at > start { experiment.settings.tolerance } else { 0.0 };
     Ok(Built { experiment, series, error, program: Some(program), undecided: Vec::new() })
 }
@@ -168,7 +168,7 @@ fn weighting(entry: &ExperimentEntry, own: &SpectrumEntry) -> Result<Weighting, 
         Some("unit") => Ok(Weighting::Unit),
         Some("proportional") => Ok(Weighting::Proportional),
         Some(other) => {
-            bail!(BAD_OPTION, "there is no weighting `{other}`"; help: "write \"modulus\", \"unit\" or \"proportional\"")
+            bail!(BAD_OPTION, "the weighting `{other}` is not known"; help: "write \"modulus\", \"unit\" or \"proportional\"")
         }
     }
 }
@@ -375,9 +375,13 @@ fn test_kramers_kronig(series: &[Series], notes: &mut Notes) {
 }
 
 /// Gives the points their weights.
-fn weigh(series: &mut [Series], weighting: Weighting) {
+///
+/// # Errors
+///
+/// Values of 0, whose weights would be infinite.
+fn weigh(series: &mut [Series], weighting: Weighting) -> Result<(), Fault> {
     if weighting == Weighting::Unit {
-        return;
+        return Ok(());
     }
     let all: Vec<(Vec<usize>, Vec<f64>)> =
         series.iter().map(|own| (own.rows.clone(), own.y.clone())).collect();
@@ -392,5 +396,9 @@ fn weigh(series: &mut [Series], weighting: Weighting) {
             }
         };
         own.relative = own.rows.iter().zip(&own.y).map(size).collect();
+        if let Some(at) = own.relative.iter().position(|size| *size == 0.0) {
+            bail!(BAD_OPTION, "in row {} of {}, the value that weights `{}` is 0", own.rows[at], own.file, own.y_name; help: "leave the cell empty to omit the point, or write `weighting = \"unit\"`")
+        }
     }
+    Ok(())
 }
