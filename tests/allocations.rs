@@ -221,6 +221,7 @@ fn curve(evaluations: u64) -> Problem {
     let y: Vec<f64> = x.iter().map(|x| 1.0 - 0.3 * x + 0.01 * (9.0 * x).sin()).collect();
     let names = ["A", "Io", "B", "R", "In"];
     let experiment = Experiment {
+        deviations: 0,
         second_attempt: true,
         name: "curve".to_owned(),
         model: Arc::new(CompiledModel::new("PolarizationCurve", program)),
@@ -238,6 +239,7 @@ fn curve(evaluations: u64) -> Problem {
         descriptions: Descriptions::default(),
         parameters: names.map(free).to_vec(),
         series: vec![Series {
+            role: Default::default(),
             experiment: "curve".to_owned(),
             y_name: "V".to_owned(),
             y_unit: "V".to_owned(),

@@ -94,6 +94,7 @@ impl Evaluator {
             name: String::new(),
             settings: model.settings(),
             model: Arc::clone(&shared),
+            deviations: 0,
             second_attempt: false,
             x_name: x.name.clone(),
             observations: vec![Observation { y_name: y.name.clone(), x: question.x.clone() }],

@@ -448,6 +448,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         x: compared.x.clone(),
         y: compared.measured.clone()?,
         weight,
+        role: Default::default(),
         relative: Vec::new(),
         sigma: Sigma::Unknown,
         column: study.y.name.clone(),
@@ -461,6 +462,7 @@ fn experiment(compared: &Compared, model: &Arc<dyn Model>, name: String) -> Expe
     let study = &compared.study;
     let parameters = study.parameters.iter().map(|quantity| quantity.name.clone());
     Experiment {
+        deviations: 0,
         second_attempt: true,
         name,
         settings: model.settings(),

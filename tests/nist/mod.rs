@@ -170,6 +170,7 @@ impl Dataset {
 
     fn series(&self, z: f64, rows: &[usize]) -> Series {
         Series {
+            role: Default::default(),
             experiment: format!("z = {z}"),
             y_name: "y".into(),
             y_unit: String::new(),
@@ -207,6 +208,7 @@ impl Dataset {
         let program =
             Program::compile(causalize(&flat).expect("it is sorted")).expect("it compiles");
         Experiment {
+            deviations: 0,
             second_attempt: true,
             name: format!("z = {z}"),
             model: Arc::new(CompiledModel::new(self.name, program).driven_by("x", "at")),

@@ -27,8 +27,10 @@ pub(super) struct Output {
 pub(super) enum Noise {
     /// A number for each measurement.
     Numbers,
-    /// A parameter that is estimated.
+    /// A parameter that is estimated and stands nowhere else.
     Estimated(String),
+    /// A formula of variables and parameters of the model, one of which has its value.
+    Formula(Expression),
 }
 
 /// A measurement.
@@ -66,18 +68,19 @@ pub(super) struct Reader<'a> {
 impl Reader<'_> {
     /// Groups the measurements by their conditions.
     pub(super) fn read(&self, rows: &[Row]) -> Result<Measured, Refusal> {
-        let mut outputs: IndexMap<(usize, String, Option<String>), Output> = IndexMap::new();
+        let mut outputs: IndexMap<(usize, String, String), Output> = IndexMap::new();
         let mut experiments: IndexMap<(Option<&str>, &str), Experiment> = IndexMap::new();
         for row in rows {
             let condition = self.condition(row, row.required("simulationConditionId")?)?;
             let rest = row.get("preequilibrationConditionId");
             let rest = rest.map(|name| self.condition(row, name)).transpose()?;
             let (observable, formula, noise, sigma) = self.output(row)?;
-            let estimated = match &noise {
-                Noise::Numbers => None,
-                Noise::Estimated(name) => Some(name.clone()),
+            let of_noise = match &noise {
+                Noise::Numbers => String::new(),
+                Noise::Estimated(name) => name.clone(),
+                Noise::Formula(formula) => printed(formula, Context::Real),
             };
-            let key = (observable, printed(&formula, Context::Real), estimated);
+            let key = (observable, printed(&formula, Context::Real), of_noise);
             let place = outputs.len();
             let entry = outputs.entry(key);
             let output = indexmap::map::Entry::index(&entry);
@@ -121,7 +124,10 @@ impl Reader<'_> {
         let mut values = placeholders(row, ("observableParameter", "observableParameters"), id)?;
         values.extend(placeholders(row, ("noiseParameter", "noiseParameters"), id)?);
         let formula = observable.formula.substituted(&values);
-        let noise = observable.noise.substituted(&values);
+        // Noise may be relative to the observable.
+        let mut of_noise = values.clone();
+        of_noise.insert(id.to_owned(), formula.clone());
+        let noise = observable.noise.substituted(&of_noise);
         for expression in [&formula, &noise] {
             let names = expression.names();
             let is_open = |name: &&String| {
@@ -132,16 +138,11 @@ impl Reader<'_> {
                 return Err(row.wrong(format!("the row gives no value for `{name}`")));
             }
         }
-        let (noise, sigma) = self.noise(row, observable, &noise)?;
+        let (noise, sigma) = self.noise(observable, &noise);
         Ok((place, formula, noise, sigma))
     }
 
-    fn noise(
-        &self,
-        row: &Row,
-        observable: &Observable,
-        noise: &Expression,
-    ) -> Result<(Noise, f64), Refusal> {
+    fn noise(&self, observable: &Observable, noise: &Expression) -> (Noise, f64) {
         let fixed: BTreeMap<String, Expression> = self
             .parameters
             .iter()
@@ -151,20 +152,13 @@ impl Reader<'_> {
         let noise = noise.substituted(&fixed).simplified();
         if let Some(sigma) = noise.value() {
             let unit = observable.of_logarithm.unwrap_or(1.0);
-            return Ok((Noise::Numbers, sigma * unit));
+            return (Noise::Numbers, sigma * unit);
         }
         match noise {
             Expression::Name(name) if self.parameters.contains_key(&name) => {
-                Ok((Noise::Estimated(name), f64::NAN))
+                (Noise::Estimated(name), f64::NAN)
             }
-            other => {
-                let text = printed(&other, Context::Real);
-                let message = format!(
-                    "the noise of `{}` is `{text}`; only a number or one estimated parameter is supported",
-                    observable.id
-                );
-                Err(row.wrong(message))
-            }
+            formula => (Noise::Formula(formula), f64::NAN),
         }
     }
 
@@ -274,6 +268,7 @@ impl Experiment {
             }
             let sigma = match &output.noise {
                 Noise::Estimated(_) => Sigma::Estimated,
+                Noise::Formula(_) => Sigma::Variable,
                 Noise::Numbers if is_one => Sigma::Number(all[0]),
                 Noise::Numbers => {
                     add(&format!("{}_sigma", output.name), &columns[0], 1);
@@ -295,4 +290,6 @@ pub(super) enum Sigma {
     /// In the column with the name of the output and `_sigma`.
     Column,
     Estimated,
+    /// A variable of the model.
+    Variable,
 }

@@ -2,8 +2,8 @@
 //! of data.
 //!
 //! Observables become variables of the model, the parameters of their formulas its parameters. Every
-//! condition is an experiment. Noise is a number for each measurement, or a standard deviation that is
-//! estimated with the parameters (`sigma = "estimate"`).
+//! condition is an experiment. Noise is a number for each measurement, a standard deviation that is
+//! estimated with the parameters (`sigma = "estimate"`), or a variable of the model.
 
 mod experiments;
 mod problem;
@@ -18,7 +18,7 @@ use crate::expression::{Context, Expression, number, printed};
 use crate::names::{Names, identifier};
 use crate::registry::BAD_OPTION;
 use crate::sbml::{self, Additions, Extended};
-use experiments::{Experiment, Measured, Noise, Reader, Sigma};
+use experiments::{Experiment, Measured, Noise, Output, Reader, Sigma};
 use indexmap::IndexMap;
 use problem::Tables;
 use rows::{Observable, Parameter, Prior};
@@ -55,7 +55,9 @@ pub fn import(name: &str, yaml: &str, read: ReadFile<'_>) -> Result<Imported, Re
         Refusal::new(0..0, Fault::new(BAD_OPTION, message))
     })?;
     let model = tables.model.clone();
-    let problem = Problem::of(name, tables)?;
+    let mut problem = Problem::of(name, tables)?;
+    let mentioned = sbml::mentioned(&text).map_err(|refusal| refusal.in_file(&model))?;
+    problem.decide_noise(&mentioned)?;
     let extended = problem.model(&text).map_err(|refusal| refusal.in_file(&model))?;
     problem.files(&extended)
 }
@@ -80,15 +82,18 @@ impl Problem {
         let reader =
             Reader { observables: &observables, parameters: &parameters, conditions: &conditions };
         let measured = reader.read(&tables.measurements)?;
-        let own = Problem { name: name.to_owned(), parameters, observables, measured, conditions };
-        own.check_noise()?;
-        Ok(own)
+        Ok(Problem { name: name.to_owned(), parameters, observables, measured, conditions })
     }
 
     /// Names of parameters that formulas and conditions use.
     fn used(&self) -> Result<BTreeSet<String>, Refusal> {
         let outputs = self.measured.outputs.iter();
         let mut used: BTreeSet<String> = outputs.flat_map(|own| own.formula.names()).collect();
+        for output in &self.measured.outputs {
+            if let Noise::Formula(formula) = &output.noise {
+                used.extend(formula.names());
+            }
+        }
         for row in self.conditions.values() {
             for (column, text) in targets(row) {
                 used.insert(column.to_owned());
@@ -98,35 +103,47 @@ impl Problem {
         Ok(used)
     }
 
-    /// A standard deviation that is estimated means nothing else, and the same for all its outputs.
-    fn check_noise(&self) -> Result<(), Refusal> {
+    /// Standard deviations that are estimated beside the parameters are those that nothing else depends
+    /// on and that mean the same for all their outputs; others become variables of the model, whose
+    /// formula is this parameter. `mentioned`: the names in the model.
+    fn decide_noise(&mut self, mentioned: &BTreeSet<String>) -> Result<(), Refusal> {
         let used = self.used()?;
-        let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
-        for (place, output) in self.measured.outputs.iter().enumerate() {
-            let Noise::Estimated(name) = &output.noise else { continue };
-            let parameter = &self.parameters[name.as_str()];
-            let scale = |place: usize| {
-                self.observables[self.measured.outputs[place].observable].of_logarithm
-            };
-            let other = owners.insert(name, place).filter(|other| scale(*other) != scale(place));
-            let why = match other {
-                Some(other) => {
-                    let other = &self.measured.outputs[other].name;
-                    format!(
-                        "`{other}` and `{}`, which share it, have different transformations",
-                        output.name
-                    )
-                }
-                None if used.contains(name) => "other formulas use it as well".to_owned(),
-                None if parameter.prior.is_some() => "it has a prior".to_owned(),
-                None => continue,
-            };
-            let message = format!(
-                "`{name}` is the estimated standard deviation of an output, but {why}, which is not supported"
-            );
-            return Err(parameter.row.wrong(message));
+        let scale = |output: &Output| self.observables[output.observable].of_logarithm;
+        let mut scales: BTreeMap<String, BTreeSet<u64>> = BTreeMap::new();
+        for output in &self.measured.outputs {
+            if let Noise::Estimated(name) = &output.noise {
+                let own = scales.entry(name.clone()).or_default();
+                own.insert(scale(output).map_or(0, f64::to_bits));
+            }
+        }
+        let is_alone = |name: &String| {
+            let is_one = scales.get(name).is_some_and(|scales| scales.len() == 1);
+            let has_prior = self.parameters[name.as_str()].prior.is_some();
+            is_one && !has_prior && !used.contains(name) && !mentioned.contains(name)
+        };
+        let shared: BTreeSet<String> =
+            scales.keys().filter(|name| !is_alone(name)).cloned().collect();
+        for output in &mut self.measured.outputs {
+            if let Noise::Estimated(name) = &output.noise
+                && shared.contains(name)
+            {
+                output.noise = Noise::Formula(Expression::name(name.clone()));
+            }
         }
         Ok(())
+    }
+
+    /// The variables of the model that have standard deviations, with their formulas; those of the natural
+    /// logarithm where values are compared by their logarithms.
+    fn variables_of_noise(&self) -> impl Iterator<Item = (String, Expression)> + '_ {
+        self.measured.outputs.iter().filter_map(|output| {
+            let Noise::Formula(formula) = &output.noise else { return None };
+            let formula = match self.observables[output.observable].of_logarithm {
+                Some(unit) if unit != 1.0 => formula.clone().times(Expression::Number(unit)),
+                _ => formula.clone(),
+            };
+            Some((deviation(&output.name), formula))
+        })
     }
 
     /// Standard deviations that are estimated beside the parameters.
@@ -135,7 +152,7 @@ impl Problem {
         outputs
             .filter_map(|own| match &own.noise {
                 Noise::Estimated(name) => Some(name.as_str()),
-                Noise::Numbers => None,
+                Noise::Numbers | Noise::Formula(_) => None,
             })
             .collect()
     }
@@ -144,13 +161,19 @@ impl Problem {
     fn check_names(&self, symbols: &BTreeMap<String, bool>) -> Result<(), Refusal> {
         for output in &self.measured.outputs {
             let observable = &self.observables[output.observable];
-            if symbols.contains_key(&output.name) || output.name == "time" {
-                let message = format!("`{}` is the name of an element of the model", output.name);
+            let own = [output.name.clone(), deviation(&output.name)];
+            let taken = own.iter().find(|name| symbols.contains_key(*name) || *name == "time");
+            if let Some(name) = taken {
+                let message = format!("`{name}` is the name of an element of the model");
                 return Err(observable.row.wrong(message));
             }
             let is_known =
                 |name: &String| symbols.contains_key(name) || self.parameters.contains_key(name);
-            if let Some(name) = output.formula.names().iter().find(|name| !is_known(name)) {
+            let mut names = output.formula.names();
+            if let Noise::Formula(formula) = &output.noise {
+                names.extend(formula.names());
+            }
+            if let Some(name) = names.iter().find(|name| !is_known(name)) {
                 let message = format!("`{name}` is neither in the model nor a parameter");
                 return Err(observable.row.wrong(message));
             }
@@ -197,14 +220,6 @@ impl Problem {
     fn model(&self, text: &str) -> Result<Extended, Refusal> {
         let symbols = sbml::symbols(text)?;
         self.check_names(&symbols)?;
-        let mentioned = sbml::mentioned(text)?;
-        if let Some(name) = self.deviations().into_iter().find(|name| mentioned.contains(*name)) {
-            let message = format!(
-                "`{name}` is the estimated standard deviation of an output, but the model uses it as \
-                 well, which is not supported"
-            );
-            return Err(self.parameters[name].row.wrong(message));
-        }
         let deviations = self.deviations();
         let parameters =
             self.parameters.values().filter(|own| !deviations.contains(own.id.as_str()));
@@ -220,13 +235,17 @@ impl Problem {
             let title = self.observables[own.observable].title.clone();
             (own.name.clone(), title, own.formula.clone())
         });
+        let of_noise = self.variables_of_noise().map(|(name, formula)| {
+            let title = "standard deviation of the measurements".to_owned();
+            (name, title, formula)
+        });
         sbml::extended(
             text,
             Additions {
                 parameters: parameters
                     .map(|own| (own.id.clone(), own.title.clone(), own.nominal))
                     .collect(),
-                variables: variables.collect(),
+                variables: variables.chain(of_noise).collect(),
                 set,
                 rests: self.measured.experiments.iter().any(|own| own.rest.is_some()),
                 switched: self.switched(&symbols)?,
@@ -334,6 +353,7 @@ impl Problem {
                 Sigma::Number(value) => number(value),
                 Sigma::Column => quoted(&format!("{}_sigma", output.name)),
                 Sigma::Estimated => quoted(&self.estimated(output)),
+                Sigma::Variable => quoted(&identifier(&deviation(&output.name))),
             };
             let logarithm = self.observables[output.observable].of_logarithm;
             let error = if logarithm.is_some() { ", error = \"lognormal\"" } else { "" };
@@ -398,6 +418,11 @@ impl Problem {
             None => Ok(quoted(&printed(&own, Context::Real))),
         }
     }
+}
+
+/// The name of the variable that has the standard deviation of an output.
+fn deviation(output: &str) -> String {
+    format!("sigma_of_{output}")
 }
 
 /// What a condition sets.

@@ -20,7 +20,6 @@ pub(super) struct Parameter {
     pub(super) nominal: Option<f64>,
     pub(super) estimated: bool,
     pub(super) prior: Option<Prior>,
-    pub(super) row: Row,
 }
 
 /// What is known of a parameter, as a problem file says it.
@@ -78,7 +77,6 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         nominal: row.number("nominalValue")?,
         estimated,
         prior: if estimated { prior(row, scale)? } else { None },
-        row: row.clone(),
         id,
     })
 }

@@ -1,54 +1,99 @@
-//! Negative logarithm of the likelihood of normal errors, some of whose standard deviations are
-//! given and others estimated along with the parameters, one for each group of points:
+//! Negative logarithm of the likelihood of normal errors. Some standard deviations are given, others
+//! are estimated along with the parameters, one for each group of points, and others are computed by
+//! the model: then the simulation has a further point for each, σᵢ.
 //!
 //! ```text
-//! -log L = n/2 ln 2π + Σ_given (½ uᵢ² - ln wᵢ) + Σ_groups n_g/2 (ln s_g² + 1) - Σ ln wᵢ,
-//! uᵢ = wᵢ (yᵢ − ŷᵢ),  s_g² = Σ_g uᵢ² / n_g
+//! -log L = n/2 ln 2π + Σ_given ½ uᵢ² + Σ_groups n_g/2 (ln s_g² + 1) + Σ_computed (½ uᵢ² + ln σᵢ)
+//!          - Σ ln wᵢ,   uᵢ = wᵢ (yᵢ − ŷᵢ), of those computed over σᵢ,   s_g² = Σ_g uᵢ² / n_g
 //! ```
 //!
 //! The estimated deviations have been put in (the likelihood is concentrated), so that only the
-//! parameters are searched. For least squares, with G = exp((Σ_given uᵢ² + Σ_g n_g ln s_g²) / n),
-//! which grows with -log L: residuals √G κ uᵢ (given) and √G κ uᵢ / s_g (estimated), whose squares
-//! add up to n G, and factors √G wᵢ/κ and √G wᵢ/(κ s_g), for which the gradient is exact;
-//! κ² = n / (Σ_given uᵢ² + Σ_g n_g).
+//! parameters are searched. For least squares, with
+//! G = exp((Σ_given uᵢ² + Σ_g n_g ln s_g² + Σ_computed (uᵢ² + 2 ln σᵢ)) / N), which grows with -log L,
+//! and N the number of points with those of the deviations: residuals √G κ uᵢ (estimated: uᵢ / s_g),
+//! and √G κ (uᵢ² - 1)/√2 of the deviations, whose squares add up to N G; factors √G wᵢ/κ (over s_g or
+//! σᵢ), and -√G √2/(κ σᵢ) of the deviations, for which the gradient is exact;
+//! κ² = N / (Σ_given uᵢ² + Σ_g n_g + Σ_computed (uᵢ² + ½ (uᵢ² - 1)²)), near 1 where the deviations
+//! hold. The factors give the Fisher information: 2/σᵢ² of a deviation.
 //!
 //! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 2.2 and chapter 11.
 
 use super::{Fitness, checked};
 use crate::elementary;
+use std::f64::consts::SQRT_2;
 
-/// A group whose points are given their deviations.
-const GIVEN: usize = usize::MAX;
+/// The standard deviation of a point, or what else the point is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Deviation {
+    /// Given: the reciprocal of its weight.
+    Given,
+    /// Estimated, that of the group with this number.
+    Group(usize),
+    /// Computed by the model: the simulated value of the point with this number.
+    Computed(usize),
+    /// The point is itself the deviation of the point with this number.
+    Of(usize),
+}
 
 /// The concentrated likelihood of some groups of points.
 pub(crate) struct Concentrated {
-    /// The group of each point.
-    group: Vec<usize>,
+    /// The deviation of each point.
+    deviations: Vec<Deviation>,
     /// Points of each group.
     count: Vec<f64>,
     /// The smallest deviation of each group: that of the simulation's own errors.
     floor: Vec<f64>,
+    /// Points that are measured.
+    n_measured: f64,
 }
 
-/// What one simulation has: Σ u² of the given, s_g² of the others.
+/// What one simulation has.
 struct Scales {
+    /// Σ u² of the given.
     given: f64,
+    /// s_g² of the groups.
     variance: Vec<f64>,
+    /// Σ (u² + 2 ln σ) of those computed by the model.
+    computed: f64,
+    /// Σ of the squares of the residuals of those, by G κ².
+    computed_squares: f64,
 }
 
 impl Concentrated {
-    /// `group`: for each point the number of its group, `None` where its sigma is given.
     /// `floor`: the smallest standard deviation of each group, in units of the weighted points.
-    pub fn new(group: &[Option<usize>], floor: Vec<f64>) -> Concentrated {
-        let mut count = vec![0.0; floor.len()];
-        group.iter().flatten().for_each(|g| count[*g] += 1.0);
-        Concentrated { group: group.iter().map(|g| g.unwrap_or(GIVEN)).collect(), count, floor }
+    pub fn new(deviations: Vec<Deviation>, floor: Vec<f64>) -> Concentrated {
+        let (mut count, mut n_measured) = (vec![0.0; floor.len()], 0.0);
+        for own in &deviations {
+            match own {
+                Deviation::Group(group) => count[*group] += 1.0,
+                Deviation::Of(_) => continue,
+                Deviation::Given | Deviation::Computed(_) => {}
+            }
+            n_measured += 1.0;
+        }
+        Concentrated { deviations, count, floor, n_measured }
     }
 
     fn scales(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> Scales {
-        let mut scales = Scales { given: 0.0, variance: vec![0.0; self.count.len()] };
-        for (u, &g) in super::differences(simulated, measured, weights).zip(&self.group) {
-            *(if g == GIVEN { &mut scales.given } else { &mut scales.variance[g] }) += u * u;
+        let mut scales = Scales {
+            given: 0.0,
+            variance: vec![0.0; self.count.len()],
+            computed: 0.0,
+            computed_squares: 0.0,
+        };
+        for (u, own) in super::differences(simulated, measured, weights).zip(&self.deviations) {
+            match *own {
+                Deviation::Given => scales.given += u * u,
+                Deviation::Group(group) => scales.variance[group] += u * u,
+                Deviation::Computed(at) => {
+                    let sigma = simulated[at];
+                    let square = (u / sigma) * (u / sigma);
+                    // The logarithm of what is no deviation is not a number: the simulation has failed.
+                    scales.computed += square + 2.0 * elementary::ln(sigma);
+                    scales.computed_squares += square + 0.5 * (square - 1.0) * (square - 1.0);
+                }
+                Deviation::Of(_) => {}
+            }
         }
         for ((variance, n), floor) in scales.variance.iter_mut().zip(&self.count).zip(&self.floor) {
             // Not `max`, which would let NaN, the mark of a failed simulation, pass.
@@ -61,17 +106,19 @@ impl Concentrated {
     /// Twice the part of -log L that depends on the parameters, but for a constant.
     fn exponent(&self, scales: &Scales) -> f64 {
         let groups = scales.variance.iter().zip(&self.count);
-        scales.given + groups.map(|(variance, n)| n * elementary::ln(*variance)).sum::<f64>()
+        let of_groups = groups.map(|(variance, n)| n * elementary::ln(*variance)).sum::<f64>();
+        scales.given + scales.computed + of_groups
     }
 }
 
 impl Fitness for Concentrated {
     fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64 {
         let scales = self.scales(simulated, measured, weights);
-        let n = measured.len() as f64;
+        let of_points = weights.iter().zip(&self.deviations);
+        let of_points = of_points.filter(|(_, own)| !matches!(own, Deviation::Of(_)));
         let constant: f64 = self.count.iter().sum::<f64>()
-            + n * elementary::ln(std::f64::consts::TAU)
-            - 2.0 * weights.iter().map(|w| elementary::ln(*w)).sum::<f64>();
+            + self.n_measured * elementary::ln(std::f64::consts::TAU)
+            - 2.0 * of_points.map(|(w, _)| elementary::ln(*w)).sum::<f64>();
         checked(0.5 * (self.exponent(&scales) + constant))
     }
 
@@ -90,9 +137,21 @@ impl Fitness for Concentrated {
         let scales = self.scales(simulated, measured, weights);
         let n = measured.len() as f64;
         let root = elementary::exp(0.5 * self.exponent(&scales) / n);
-        let kappa = (n / (scales.given + self.count.iter().sum::<f64>())).sqrt();
-        for (k, &g) in self.group.iter().enumerate() {
-            let own = if g == GIVEN { 1.0 } else { scales.variance[g].sqrt() };
+        let square = scales.given + self.count.iter().sum::<f64>() + scales.computed_squares;
+        let kappa = (n / square).sqrt();
+        for (k, &deviation) in self.deviations.iter().enumerate() {
+            let own = match deviation {
+                Deviation::Given => 1.0,
+                Deviation::Group(group) => scales.variance[group].sqrt(),
+                Deviation::Computed(at) => simulated[at],
+                Deviation::Of(point) => {
+                    let sigma = simulated[k];
+                    let u = weights[point] / sigma * (simulated[point] - measured[point]);
+                    residuals[k] = root * kappa * (u * u - 1.0) / SQRT_2;
+                    factors[k] = -root / kappa * SQRT_2 / sigma;
+                    continue;
+                }
+            };
             residuals[k] = root * kappa * weights[k] / own * (simulated[k] - measured[k]);
             factors[k] = root / kappa * weights[k] / own;
         }
@@ -106,11 +165,13 @@ impl Fitness for Concentrated {
         weights: &[f64],
     ) -> Option<Vec<f64>> {
         let scales = self.scales(simulated, measured, weights);
-        let own = |(w, &g): (&f64, &usize)| match g {
-            GIVEN => *w,
-            g => w / scales.variance[g].sqrt(),
+        let own = |(k, (w, deviation)): (usize, (&f64, &Deviation))| match *deviation {
+            Deviation::Given => *w,
+            Deviation::Group(group) => w / scales.variance[group].sqrt(),
+            Deviation::Computed(at) => w / simulated[at],
+            Deviation::Of(_) => SQRT_2 / simulated[k],
         };
-        Some(weights.iter().zip(&self.group).map(own).collect())
+        Some(weights.iter().zip(&self.deviations).enumerate().map(own).collect())
     }
 }
 
@@ -119,9 +180,9 @@ mod tests {
     use super::*;
 
     fn cases() -> [Concentrated; 3] {
-        let all = |g: [Option<usize>; 6], n| Concentrated::new(&g, vec![1e-9; n]);
-        let (a, b) = (Some(0), Some(1));
-        [all([a; 6], 1), all([a, a, a, b, b, b], 2), all([None, None, a, a, a, a], 1)]
+        let all = |g: [Deviation; 6], n| Concentrated::new(g.to_vec(), vec![1e-9; n]);
+        let (a, b, given) = (Deviation::Group(0), Deviation::Group(1), Deviation::Given);
+        [all([a; 6], 1), all([a, a, a, b, b, b], 2), all([given, given, a, a, a, a], 1)]
     }
 
     const MEASURED: [f64; 6] = [1.0, 2.0, 3.0, 10.0, 20.0, 30.0];
@@ -167,6 +228,50 @@ mod tests {
             let found: f64 = (0..6).map(|k| 2.0 * f[k] * r[k] * derivative[k]).sum();
             assert!((found - expected).abs() < 1e-6 * expected.abs(), "{found} {expected}");
         }
+    }
+
+    /// Two measured points whose deviations the model computes, beside one with a given one.
+    #[test]
+    fn deviations_that_the_model_computes_are_points_of_their_own() {
+        let own = Concentrated::new(
+            vec![
+                Deviation::Computed(3),
+                Deviation::Computed(4),
+                Deviation::Given,
+                Deviation::Of(0),
+                Deviation::Of(1),
+            ],
+            Vec::new(),
+        );
+        let (measured, weights) = ([1.0, 2.0, 3.0, 0.0, 0.0], [1.0, 0.5, 2.0, 1.0, 1.0]);
+        let simulated = |p: f64| [1.1 + p, 2.3, 3.3 - p, 0.2 + p * p, 0.5 - 0.3 * p];
+        let value = |p: f64| own.fitness(&simulated(p), &measured, &weights);
+        let density = |e: f64, sigma: f64| {
+            0.5 * (e / sigma).powi(2) + sigma.ln() + 0.5 * std::f64::consts::TAU.ln()
+        };
+        let s = simulated(0.2);
+        let expected =
+            density(s[0] - 1.0, s[3]) + density(s[1] - 2.0, 2.0 * s[4]) + density(s[2] - 3.0, 0.5);
+        assert!((value(0.2) - expected).abs() < 1e-12, "{} {expected}", value(0.2));
+        let weights_there = own.error_weights(&s, &measured, &weights).unwrap();
+        assert!((weights_there[1] - 0.5 / s[4]).abs() < 1e-15);
+        assert!((weights_there[3] - SQRT_2 / s[3]).abs() < 1e-12);
+        let (mut r, mut f) = ([0.0; 5], [0.0; 5]);
+        let mut square = |p: f64| {
+            assert!(own.scaled(&simulated(p), &measured, &weights, &mut r, &mut f));
+            (r.iter().map(|r| r * r).sum::<f64>(), r, f)
+        };
+        let ratio = (value(0.3) - value(0.2)) / 2.5;
+        assert!(((square(0.3).0 / square(0.2).0).ln() - ratio).abs() < 1e-12);
+        let h = 1e-6;
+        let expected = (square(0.2 + h).0 - square(0.2 - h).0) / (2.0 * h);
+        let (_, r, f) = square(0.2);
+        let derivative = [1.0, 0.0, -1.0, 0.4, -0.3];
+        let found: f64 = (0..5).map(|k| 2.0 * f[k] * r[k] * derivative[k]).sum();
+        assert!((found - expected).abs() < 1e-7 * expected.abs(), "{found} {expected}");
+        // What is no deviation has failed.
+        let negative = [1.0, 2.0, 3.0, -0.1, 0.5];
+        assert_eq!(own.fitness(&negative, &measured, &weights), crate::ga::FAILED_FITNESS);
     }
 
     #[test]

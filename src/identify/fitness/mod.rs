@@ -8,7 +8,7 @@ mod robust;
 mod root_mean_square;
 mod sum_of_squares;
 
-pub(crate) use concentrated::Concentrated;
+pub(crate) use concentrated::{Concentrated, Deviation};
 pub use sum_of_squares::sum_of_squares;
 
 use crate::ga::FAILED_FITNESS;

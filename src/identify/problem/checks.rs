@@ -5,7 +5,6 @@
 //! refutes are not made: where neighbours are alike, or the spread changes, large residuals are not
 //! outliers and their distribution is not asked.
 
-use super::inference::PRIOR;
 use super::statistics::distributions::{
     chi_square_tails, f_upper, signs_two_sided, student_two_sided,
 };
@@ -59,6 +58,8 @@ struct Own<'a> {
     has_sigma: bool,
     /// Whether the fitness counts large residuals less.
     robust: bool,
+    /// Whether these are deviations that the model computes.
+    is_deviation: bool,
 }
 
 impl Own<'_> {
@@ -85,8 +86,8 @@ pub(crate) fn residual_findings(
     let alpha = FAMILY / (TESTS * all.len() + pairs(problem).len() + 1) as f64;
     let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
     // A contradiction between a prior and the data is reported of the prior.
-    let is_prior = |k: usize| problem.series[k].experiment == PRIOR;
-    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k) && !is_prior(*k)) {
+    let is_no_data = |k: usize| !problem.series[k].is_data();
+    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k) && !is_no_data(*k)) {
         let size = rms(&own.points.iter().map(|&j| simulated[j]).collect::<Vec<f64>>());
         let raw: Vec<f64> = own
             .points
@@ -128,6 +129,7 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
             first: start,
             has_sigma: series.sigma.is_known(),
             robust: statistics.robust,
+            is_deviation: matches!(series.role, super::Role::Deviation(_)),
         }
     };
     problem.series.iter().map(one).collect()
@@ -145,7 +147,8 @@ fn suspected_outliers(
     alpha: f64,
 ) -> (Vec<usize>, Vec<f64>) {
     let mut units = vec![0.0; statistics.residuals.len()];
-    for own in all {
+    // What nothing is compared with is no outlier.
+    for own in all.iter().filter(|own| !own.is_deviation) {
         let size = rms(&own.residuals);
         let unit = if size > 0.0 { 1.0 / size } else { 0.0 };
         own.points.iter().for_each(|&j| units[j] = unit);
@@ -472,7 +475,7 @@ fn chi_square(
     outliers: &[usize],
     alpha: f64,
 ) -> Option<Finding> {
-    if ErrorModel::of(problem) != ErrorModel::Known || !statistics.believed {
+    if !statistics.believed {
         return None;
     }
     let value = statistics.chi_square(problem, outliers);
@@ -574,7 +577,8 @@ fn pairs(problem: &Problem) -> Vec<(usize, usize)> {
     let series = &problem.series;
     let is_pair = |(a, b): &(usize, usize)| {
         let (a, b) = (&series[*a], &series[*b]);
-        a.experiment == b.experiment && a.x == b.x && a.y != b.y && a.x.len() >= FEW
+        let are_data = a.is_data() && b.is_data();
+        are_data && a.experiment == b.experiment && a.x == b.x && a.y != b.y && a.x.len() >= FEW
     };
     let all = (0..series.len()).flat_map(|a| (a + 1..series.len()).map(move |b| (a, b)));
     all.filter(is_pair).collect()

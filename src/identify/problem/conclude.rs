@@ -104,9 +104,7 @@ fn rescale(run: &mut Run) -> Result<(), Fault> {
 
 /// The residuals in units of their weights.
 fn weighted(run: &Run, simulated: &[f64]) -> Vec<f64> {
-    let weights = run.evaluation.error_weights(&run.problem, simulated);
-    let measured = run.problem.series.iter().flat_map(|series| &series.y);
-    measured.zip(simulated).zip(&weights).map(|((m, s), w)| w * (m - s)).collect()
+    run.evaluation.standard_residuals(&run.problem, simulated)
 }
 
 fn weights_at(problem: &Problem, simulated: &[f64]) -> Vec<f64> {

@@ -30,7 +30,7 @@ fn draw<'a>(
 ) {
     let mut rest = series;
     for experiment in experiments {
-        let count = experiment.observations.len().min(rest.len());
+        let count = (experiment.observations.len() - experiment.deviations).min(rest.len());
         let (own, others) = rest.split_at_mut(count);
         if let Some(curves) = curves(experiment, values, hurry) {
             own.iter_mut().zip(curves).for_each(|(series, curve)| series.curve = curve);

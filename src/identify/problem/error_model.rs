@@ -1,9 +1,9 @@
 //! The standard deviations of the measurements: given, a formula of the output, or estimated.
 
-use super::{Finding, FindingKind, Problem, Series, Severity};
+use super::{Finding, FindingKind, Problem, Role, Series, Severity};
 use crate::diag::Fault;
 use crate::fault;
-use crate::fitness::{Concentrated, Fitness};
+use crate::fitness::{Concentrated, Deviation, Fitness};
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -45,6 +45,9 @@ pub enum Sigma {
     Given(Vec<f64>),
     /// A formula of the output, and believed.
     Formula(SigmaFormula),
+    /// A variable of the model, which parameters may change: the series of it follows with the
+    /// [role](Role) of a deviation.
+    Variable(String),
     /// Estimated with the parameters, one for each variable.
     Estimated,
     /// Estimated with the parameters, one for all series with this name.
@@ -56,7 +59,7 @@ pub enum Sigma {
 impl Sigma {
     /// Whether the deviations are known.
     pub fn is_known(&self) -> bool {
-        matches!(self, Sigma::Given(_) | Sigma::Formula(_))
+        matches!(self, Sigma::Given(_) | Sigma::Formula(_) | Sigma::Variable(_))
     }
 
     /// Whether they are estimated.
@@ -67,9 +70,11 @@ impl Sigma {
     /// Weights of the points where the output is `values`.
     pub fn weights(&self, values: &[f64], weight: f64) -> Vec<f64> {
         match self {
-            Sigma::Unknown | Sigma::Estimated | Sigma::Shared(_) | Sigma::Automatic => {
-                vec![weight; values.len()]
-            }
+            Sigma::Unknown
+            | Sigma::Estimated
+            | Sigma::Shared(_)
+            | Sigma::Automatic
+            | Sigma::Variable(_) => vec![weight; values.len()],
             Sigma::Given(sigma) => sigma.iter().map(|sigma| weight / sigma).collect(),
             Sigma::Formula(formula) => {
                 values.iter().map(|y| weight / (formula.value)(*y)).collect()
@@ -87,6 +92,8 @@ pub enum ErrorModel {
     OneVariance,
     /// All deviations are known.
     Known,
+    /// All are known or computed by the model, some computed.
+    Computed,
     /// Some are estimated with the parameters.
     Estimated,
 }
@@ -97,11 +104,18 @@ impl ErrorModel {
         let series = &problem.series;
         if series.iter().any(|series| series.sigma.is_estimated()) {
             ErrorModel::Estimated
+        } else if series.iter().any(|series| matches!(series.sigma, Sigma::Variable(_))) {
+            ErrorModel::Computed
         } else if !series.is_empty() && series.iter().all(|series| series.sigma.is_known()) {
             ErrorModel::Known
         } else {
             ErrorModel::OneVariance
         }
+    }
+
+    /// Whether the likelihood is what is minimized, as the deviations change with the parameters.
+    pub fn is_likelihood(self) -> bool {
+        matches!(self, ErrorModel::Computed | ErrorModel::Estimated)
     }
 }
 
@@ -144,15 +158,27 @@ pub fn decided(series: &[Series]) -> Option<Finding> {
     Some(finding)
 }
 
-/// The likelihood of series of which some deviations are estimated, one for each variable.
+/// The first point of each series.
+fn firsts(series: &[Series]) -> Vec<usize> {
+    let first = |next: &mut usize, own: &Series| {
+        let first = *next;
+        *next += own.y.len();
+        Some(first)
+    };
+    series.iter().scan(0, first).collect()
+}
+
+/// The likelihood of series of which some deviations are computed by the model, or estimated, one for
+/// each variable.
 ///
 /// # Errors
 ///
 /// A variable with too few points for a deviation of its own, by its name.
 pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (String, Fault)> {
     let mut names: Vec<&str> = Vec::new();
-    let (mut groups, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
-    for own in series {
+    let (mut deviations, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
+    let firsts = firsts(series);
+    for (k, own) in series.iter().enumerate() {
         let group = own.deviation().map(|deviation| {
             names.iter().position(|name| *name == deviation).unwrap_or_else(|| {
                 names.push(deviation);
@@ -163,7 +189,13 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
         if let Some(group) = group {
             sizes[group].extend(own.weights().iter().zip(&own.y).map(|(weight, y)| weight * y));
         }
-        groups.extend(own.y.iter().map(|_| group));
+        let computed = (k..series.len()).find(|of| series[*of].role == Role::Deviation(of - k));
+        deviations.extend((0..own.y.len()).map(|point| match (own.role, computed, group) {
+            (Role::Deviation(back), ..) => Deviation::Of(firsts[k - back] + point),
+            (_, Some(computed), _) => Deviation::Computed(firsts[computed] + point),
+            (_, _, Some(group)) => Deviation::Group(group),
+            _ => Deviation::Given,
+        }));
     }
     if let Some((name, values)) = names.iter().zip(&sizes).find(|(_, values)| values.len() < FEW) {
         let fault = fault!(
@@ -177,5 +209,5 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
         let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
         (FLOOR * noise * square.sqrt()).max(1e-150)
     };
-    Ok(Box::new(Concentrated::new(&groups, sizes.iter().map(floor).collect())))
+    Ok(Box::new(Concentrated::new(deviations, sizes.iter().map(floor).collect())))
 }

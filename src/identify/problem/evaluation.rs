@@ -456,6 +456,33 @@ impl Evaluation {
             .unwrap_or_else(|| self.weights.clone())
     }
 
+    /// Weighted residuals, measured less simulated, without the factors of a robust fitness; those of
+    /// deviations that the model computes are what their points' residuals u make of them,
+    /// (u² - 1)/√2, whose mean is 0 and whose variance is 1 where the deviations hold.
+    pub(super) fn standard_residuals(&self, problem: &Problem, simulated: &[f64]) -> Vec<f64> {
+        let weights = self.error_weights(problem, simulated);
+        let points = self.measured.iter().zip(simulated).zip(&weights);
+        let mut residuals: Vec<f64> = points.map(|((m, s), w)| w * (m - s)).collect();
+        let mut first = 0;
+        for (k, series) in problem.series.iter().enumerate() {
+            if let super::Role::Deviation(back) = series.role {
+                let distance: usize =
+                    problem.series[k - back..k].iter().map(|own| own.y.len()).sum();
+                for point in first..first + series.y.len() {
+                    let u = residuals[point - distance];
+                    residuals[point] = (u * u - 1.0) / std::f64::consts::SQRT_2;
+                }
+            }
+            first += series.y.len();
+        }
+        residuals
+    }
+
+    /// The sum of squares that least squares minimize.
+    pub(super) fn searched_sum(&self, problem: &Problem, simulated: &[f64]) -> f64 {
+        self.residuals(problem, simulated).iter().map(|r| r * r).sum()
+    }
+
     /// The first objective of a simulation.
     pub(super) fn objective(&self, problem: &Problem, simulated: &[f64]) -> f64 {
         problem.objectives[0].1.fitness(simulated, &self.measured, &self.weights)

@@ -35,8 +35,10 @@ pub struct Experiment {
     pub second_attempt: bool,
     /// The variable that X holds values of; `time` if nothing else.
     pub x_name: String,
-    /// What is compared.
+    /// What is compared, and after that the standard deviations that the model computes.
     pub observations: Vec<Observation>,
+    /// How many of the observations are such.
+    pub deviations: usize,
     /// The free parameters that it depends on: their places in the problem, and their names in the
     /// model.
     pub parameters: Vec<(usize, String)>,
@@ -86,8 +88,16 @@ struct Stage {
 
 impl Experiment {
     fn portable(&self) -> Result<PortableExperiment, String> {
-        let Experiment { name, model, settings, second_attempt, x_name, observations, parameters } =
-            self;
+        let Experiment {
+            name,
+            model,
+            settings,
+            second_attempt,
+            x_name,
+            observations,
+            deviations,
+            parameters,
+        } = self;
         let of = |observation: &Observation| (observation.y_name.clone(), observation.x.clone());
         Ok(PortableExperiment {
             name: name.clone(),
@@ -96,6 +106,7 @@ impl Experiment {
             second_attempt: *second_attempt,
             x_name: x_name.clone(),
             observations: observations.iter().map(of).collect(),
+            deviations: *deviations,
             parameters: parameters.clone(),
         })
     }

@@ -64,6 +64,7 @@ fn problem(
         y: x.iter().zip(noise).map(|(x, e)| output(truth, *x) + e).collect(),
         x: x.clone(),
         weight: 1.0,
+        role: Default::default(),
         relative: Vec::new(),
         sigma: sigma.clone(),
         column: String::new(),

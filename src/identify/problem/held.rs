@@ -152,7 +152,7 @@ fn tried(run: &mut Run, held: &[usize]) -> Result<Tried, Fault> {
     let Some(mut refit) = Refit::new(&run.problem, &run.evaluation) else {
         return Ok(Tried::Nothing);
     };
-    let Some(residuals) = refit.plain_residuals(&best.values) else { return Ok(Tried::Nothing) };
+    let Some(residuals) = refit.searched_residuals(&best.values) else { return Ok(Tried::Nothing) };
     let square: f64 = residuals.iter().map(|r| r * r).sum();
     // What the test of a minimum leaves open.
     let freedom = residuals.len().saturating_sub(best.values.len()).max(1) as f64;

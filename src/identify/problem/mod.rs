@@ -155,9 +155,24 @@ pub trait Simulate: Send {
     }
 }
 
+/// What the points of a series are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Role {
+    /// Measured.
+    #[default]
+    Data,
+    /// What is known of a parameter before.
+    Prior,
+    /// The standard deviations of the points of an earlier series, so many series before: the model
+    /// computes them, and nothing is compared with them.
+    Deviation(usize),
+}
+
 /// A measured series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
+    /// What its points are.
+    pub role: Role,
     /// The experiment that it belongs to.
     pub experiment: String,
     /// The variable that was measured, and its unit.
@@ -197,6 +212,25 @@ impl Series {
         match self.experiment.is_empty() {
             true => self.y_name.clone(),
             false => format!("{} / {}", self.experiment, self.y_name),
+        }
+    }
+
+    /// Whether its points were measured.
+    pub fn is_data(&self) -> bool {
+        self.role == Role::Data
+    }
+
+    /// The series of the standard deviations of this one, `back` series later, where the variable
+    /// of the model `name` has them.
+    pub fn deviations(&self, name: &str, back: usize) -> Series {
+        Series {
+            role: Role::Deviation(back),
+            y_name: name.to_owned(),
+            y: vec![0.0; self.y.len()],
+            sigma: Sigma::Given(vec![1.0; self.y.len()]),
+            weight: 1.0,
+            relative: Vec::new(),
+            ..self.clone()
         }
     }
 

@@ -240,7 +240,7 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
         let place = first;
         first += series.x.len();
         // Priors are compared with the data elsewhere.
-        let is_prior = series.experiment == super::inference::PRIOR;
+        let is_prior = !series.is_data();
         if series.x.len() != 1 || is_prior || statistics.freedom < 1.0 {
             continue;
         }

@@ -30,5 +30,6 @@ pub struct PortableExperiment {
     pub(super) x_name: String,
     /// Variables with X of their points.
     pub(super) observations: Vec<(String, Vec<f64>)>,
+    pub(super) deviations: usize,
     pub(super) parameters: Vec<(usize, String)>,
 }

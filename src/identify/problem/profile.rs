@@ -214,6 +214,11 @@ pub fn limit(
     }
     match ErrorModel::of(problem) {
         ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
+        // S is N G with N ln G = -2 log L.
+        ErrorModel::Computed => {
+            let rise = chi_square_quantile(0.95, 1.0) / problem.n_points() as f64;
+            smallest * elementary::exp(rise)
+        }
         ErrorModel::OneVariance | ErrorModel::Estimated => {
             smallest * (1.0 + elementary::powi(quantile, 2) / freedom)
         }

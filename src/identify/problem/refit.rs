@@ -97,10 +97,12 @@ impl<'a> Refit<'a> {
     /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
     pub(crate) fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
         let simulated = self.evaluation.simulate(values).ok()?;
-        let weights = self.evaluation.error_weights(self.problem, &simulated);
-        let measured = self.problem.series.iter().flat_map(|series| &series.y);
-        let pairs = measured.zip(&simulated).zip(&weights);
-        Some(pairs.map(|((m, s), w)| w * (m - s)).collect())
+        Some(self.evaluation.standard_residuals(self.problem, &simulated))
+    }
+
+    /// The residuals that are minimized.
+    pub(crate) fn searched_residuals(&mut self, values: &[f64]) -> Option<Vec<f64>> {
+        self.residuals(&[values.to_vec()]).pop().flatten()
     }
 
     fn search(

@@ -329,6 +329,9 @@ pub struct SolvedSeries {
     /// Whether that was estimated with the parameters.
     #[serde(default)]
     pub(crate) sigma_estimated: bool,
+    /// Whether the model computes sigma, which then is the root mean square.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) sigma_computed: bool,
     /// Runs of the same sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub(crate) residual_test: Option<[f64; 4]>,
@@ -366,6 +369,7 @@ impl SolvedSeries {
             r_squared: (total > 0.0).then(|| 1.0 - square / total),
             sigma: None,
             sigma_estimated: series.sigma.is_estimated(),
+            sigma_computed: matches!(series.sigma, super::Sigma::Variable(_)),
             residual_test: test
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
             curve: Vec::new(),

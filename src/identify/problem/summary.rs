@@ -114,14 +114,12 @@ impl Solution {
         let series = |own: &super::Series| {
             let (simulated, others) = rest.split_at(own.x.len());
             rest = others;
-            SolvedSeries::new(own, simulated)
+            own.is_data().then(|| SolvedSeries::new(own, simulated))
         };
-        let data = run.problem.series.iter();
-        let data = data.filter(|series| series.experiment != super::inference::PRIOR);
         let mut solution = Solution {
             fitness: best.fitness,
             parameters: run.problem.parameters.iter().zip(&best.values).map(parameter).collect(),
-            series: data.map(series).collect(),
+            series: run.problem.series.iter().filter_map(series).collect(),
             validation,
             ..searched(run, stop)
         };
@@ -270,7 +268,7 @@ fn solved_series(
     simulated: &[f64],
 ) -> Vec<SolvedSeries> {
     let mut first = 0;
-    let one = |measured: &super::Series| {
+    let one = |measured: &super::Series| -> Option<SolvedSeries> {
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
@@ -281,11 +279,10 @@ fn solved_series(
         solved.sigma = (measured.sigma != Sigma::Unknown)
             .then(|| (square / measured.x.len() as f64).sqrt())
             .filter(|sigma| sigma.is_finite());
-        solved
+        // Priors and deviations have points, but they are not data.
+        measured.is_data().then_some(solved)
     };
-    // Priors, the last, count as points, but they are not data.
-    let solved = problem.series.iter().map(one);
-    solved.filter(|series| series.experiment != super::inference::PRIOR).collect()
+    problem.series.iter().filter_map(one).collect()
 }
 
 /// What the parameters do whose derivative is zero.
@@ -328,6 +325,11 @@ fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     run.evaluation.scales()?;
     if statistics.robust {
         return None;
+    }
+    if ErrorModel::of(&run.problem).is_likelihood() {
+        let value =
+            run.observed.best.as_ref()?.fitness + super::inference::logarithms(&run.problem);
+        return Some(value).filter(|value| value.is_finite());
     }
     let n = statistics.residuals.len() as f64;
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();

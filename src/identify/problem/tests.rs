@@ -39,6 +39,7 @@ pub(super) fn problem(
         x: x.clone(),
         y,
         weight: 1.0,
+        role: Default::default(),
         relative: Vec::new(),
         sigma: Sigma::Unknown,
         column: String::new(),

@@ -383,7 +383,11 @@ fn series_line(series: &SolvedSeries) -> String {
     let rmse = format!("{} {}", significant(series.rmse, 4), series.y[1]);
     _ = write!(line, ", RMSE {}", rmse.trim_end());
     if let Some(sigma) = series.sigma {
-        let how = if series.sigma_estimated { "estimated" } else { "given" };
+        let how = match (series.sigma_estimated, series.sigma_computed) {
+            (true, _) => "estimated",
+            (_, true) => "root mean square, from the model",
+            _ => "given",
+        };
         _ = write!(line, ", sigma {} ({how})", significant(sigma, 4));
     }
     if let Some(r_squared) = series.r_squared {

@@ -41,6 +41,7 @@ fn experiment(portable: PortableExperiment, clock: fn() -> f64) -> Result<Experi
             .into_iter()
             .map(|(y_name, x)| Observation { y_name, x })
             .collect(),
+        deviations: portable.deviations,
         parameters: portable.parameters,
     })
 }

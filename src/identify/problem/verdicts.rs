@@ -16,7 +16,7 @@ use super::effects::{Effect, Finite};
 use super::grounds::Grounds;
 use super::non_identifiable::Form;
 use super::profile::{Known, Profile, profiles};
-use super::{Free, Run, Solution, SolvedParameter, Statistics, Verdict};
+use super::{ErrorModel, Free, Run, Solution, SolvedParameter, Statistics, Verdict};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
@@ -217,7 +217,7 @@ impl Solution {
         }
         let values: Vec<f64> = self.parameters.iter().map(|own| own.value).collect();
         let reach = self.linear_reach(run);
-        let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
+        let square = statistics.searched;
         let rise = statistics.limit_of_squares() - square;
         let others = self.other_places(square + NEARBY * rise);
         let budget = match run.problem.noise <= super::NOISE_OF_FORMULAS {
@@ -322,7 +322,6 @@ impl Solution {
         let rows = run.evaluation.simulate_all(&places);
         self.effort.simulations_for_statistics += rows.len() as u64;
         let allowed = elementary::powi(statistics.quantile, 2) * statistics.variance;
-        let smallest = statistics.residuals.iter().map(|r| r * r).sum::<f64>();
         // What a constraint forbids tells nothing of the model.
         let is_forbidden = |at: usize| {
             run.problem.inference.constraints.iter().any(|own| own.violation(&places[at]) > 0.0)
@@ -333,7 +332,7 @@ impl Solution {
             }
             let expected = allowed * parts[at] * parts[at];
             let rise = match &rows[at] {
-                Ok(row) => square(run, statistics, row) - smallest,
+                Ok(row) => rise(run, statistics, row),
                 Err(_) => f64::INFINITY,
             };
             let is_noticeable = rise.abs().max(expected) > NOTICEABLE * allowed;
@@ -512,9 +511,15 @@ fn is_without_noise(run: &Run, statistics: &Statistics) -> bool {
     is_from_solver && !statistics.believed && !run.conclusion.resolved
 }
 
-/// The weighted sum of squares of a simulation, as the statistics have it.
-fn square(run: &Run, statistics: &Statistics, row: &[f64]) -> f64 {
+/// By how much the weighted sum of squares of a simulation, as the statistics have it, or twice the
+/// negative log-likelihood where the model computes deviations, exceeds that of the fit.
+fn rise(run: &Run, statistics: &Statistics, row: &[f64]) -> f64 {
+    if ErrorModel::of(&run.problem) == ErrorModel::Computed {
+        let least = run.observed.best.as_ref().map_or(f64::NAN, |best| best.fitness);
+        return 2.0 * (run.evaluation.objective(&run.problem, row) - least);
+    }
     let measured = run.problem.series.iter().flat_map(|series| &series.y);
     let points = measured.zip(row).zip(&statistics.weights);
-    points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum()
+    let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
+    square - statistics.residuals.iter().map(|r| r * r).sum::<f64>()
 }

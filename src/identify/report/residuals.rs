@@ -148,6 +148,7 @@ fn row(solution: &Solution, series: &SolvedSeries, (kind, sigmas): (&str, bool))
                 td {
                     @match series.sigma { Some(sigma) => (engineering(sigma, 4, &series.y[1])), None => "–" }
                     @if series.sigma_estimated { " (estimated)" }
+                    @if series.sigma_computed { " (root mean square, from the model)" }
                 }
             }
             td { @match series.r_squared { Some(r) => (number(r, 6)), None => "–" } }

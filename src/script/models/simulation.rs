@@ -134,6 +134,7 @@ pub struct Simulated {
 ///     name: String::new(),
 ///     settings: model.settings(),
 ///     model: Arc::new(model),
+///     deviations: 0,
 ///     second_attempt: true,
 ///     x_name: "time".to_owned(),
 ///     observations: vec![Observation { y_name: "x".to_owned(), x: vec![0.5, 1.0] }],

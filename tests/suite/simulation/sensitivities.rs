@@ -38,6 +38,7 @@ fn experiment(
     let observation = |name: &&str| Observation { y_name: (*name).to_owned(), x: x.to_vec() };
     let stop = if x_name == "time" { x.last().copied().unwrap_or(1.0) } else { 1.0 };
     let experiment = Experiment {
+        deviations: 0,
         second_attempt: true,
         name: "test".to_owned(),
         model: Arc::new(CompiledModel::new("test", program)),
@@ -370,6 +371,7 @@ fn other_methods_integrate_no_sensitivities_but_static_curves_need_none() {
     let of = |text: &str| {
         let program = Program::compile(causalize(&flat(text)).unwrap()).unwrap();
         let experiment = Experiment {
+            deviations: 0,
             second_attempt: true,
             name: "test".to_owned(),
             model: Arc::new(CompiledModel::new("test", program)),
@@ -404,6 +406,7 @@ fn static_curves_are_differentiated_point_by_point() {
     let x = vec![0.5, 2.0];
     let observed = |name: &str| Observation { y_name: name.to_owned(), x: x.clone() };
     let experiment = Experiment {
+        deviations: 0,
         second_attempt: true,
         name: "test".to_owned(),
         model: Arc::new(CompiledModel::new("test", program).driven_by("x", "at")),

@@ -178,15 +178,42 @@ fn uniform_priors_narrow_the_range() {
     assert!((range[0] - 0.1).abs() < 1e-12 && (range[1] - 1.0).abs() < 1e-12, "{written}");
 }
 
+/// Noise that depends on estimated parameters and on the model, and noise that is a parameter of the
+/// model, are variables of the model.
+#[test]
+fn noise_may_be_a_formula() {
+    for (noise, formula) in [("0.05 + 0.1*k*x", "(0.05 + 0.1*k*x)*2.30258"), ("k", "k*2.30258")] {
+        let here = problem();
+        let path = here.path().join("o.tsv");
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replace("\t0.1", &format!("\t{noise}"))).unwrap();
+        let (code, out, errors) = gapi(&here, &["import", "p.yaml", "--out", "p"]);
+        assert_eq!(code, 0, "{out}{errors}");
+        let written = fs::read_to_string(here.path().join("p/p.toml")).unwrap();
+        assert!(written.contains("sigma = \"sigma_of_logarithm\""), "{written}");
+        let model = fs::read_to_string(here.path().join("p/Decay.mo")).unwrap();
+        assert!(model.contains(formula), "{model}");
+        let (code, out, errors) = gapi(&here, &["identify", "p/p.toml", "--out", "fit"]);
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(out.contains("root mean square, from the model"), "{out}");
+        assert!(out.contains("negative log-likelihood"), "{out}");
+    }
+}
+
 #[test]
 fn what_is_not_supported_is_refused_at_its_place() {
     for (file, old, new, said, place) in [
-        ("o.tsv", "\t0.1", "\tk*x", "the noise of `logarithm` is `k*x`", "m.tsv:5"),
+        (
+            "o.tsv",
+            "\t0.1",
+            "\tk*wrong",
+            "`wrong` is neither in the model nor a parameter",
+            "o.tsv:3",
+        ),
         ("m.tsv", "low\t5\t", "low\t-5\t", "missing or negative", "m.tsv:27"),
         ("o.tsv", "log10", "sqrt", "the transformation `sqrt` is not supported", "o.tsv:3"),
         ("o.tsv", "1_y*x", "1_y**", "is not a formula", "o.tsv:2"),
         ("p.yaml", "version: 1", "version: 2.0.0", "version 2 of PEtab is not supported", "p.yaml"),
-        ("o.tsv", "\t0.1", "\tk", "an output, but the model uses it as well", "p.tsv:2"),
         ("p.tsv", "scale\tlin", "k\tlin", "a row above has the same parameter", "p.tsv:3"),
         ("o.tsv", "logarithm\tx", "y\tx", "a row above has the same observable", "o.tsv:3"),
         ("c.tsv", "high\tx_high", "low\tx_high", "a row above has the same condition", "c.tsv:3"),

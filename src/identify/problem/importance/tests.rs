@@ -41,6 +41,7 @@ fn analysed(
             x: vec![0.0, 1.0],
             y: vec![0.0, 0.0],
             weight: 2.0,
+            role: Default::default(),
             relative: Vec::new(),
             sigma: crate::problem::Sigma::Unknown,
             column: String::new(),

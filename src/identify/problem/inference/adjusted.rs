@@ -8,7 +8,7 @@
 use super::{Constraint, PortableConstraint};
 use crate::diag::Fault;
 use crate::problem::{
-    ErrorModel, Failed, FailureKind, Portable, Problem, Series, Sigma, Simulate, likelihood,
+    ErrorModel, Failed, FailureKind, Portable, Problem, Role, Series, Sigma, Simulate, likelihood,
 };
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// The experiment to which the points of priors belong.
-pub(crate) const PRIOR: &str = "(prior)";
+const PRIOR: &str = "(prior)";
 
 /// What is known of a parameter without the data.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -101,8 +101,7 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), (Cause, F
         let series = series.map_err(|fault| (Cause::Prior(prior.parameter), fault))?;
         problem.series.push(series);
     }
-    if let Some(last) = weighed.last().filter(|_| ErrorModel::of(problem) == ErrorModel::Estimated)
-    {
+    if let Some(last) = weighed.last().filter(|_| ErrorModel::of(problem).is_likelihood()) {
         // The likelihood counts the points of the priors as well.
         let all = likelihood(&problem.series, problem.noise);
         problem.objectives[0].1 =
@@ -189,6 +188,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
                            {}", problem.parameters[prior.parameter].min; help: "give a positive minimum");
     }
     Ok(Series {
+        role: Role::Prior,
         experiment: PRIOR.to_owned(),
         y_name: if logarithm { format!("ln({name})") } else { name.clone() },
         y_unit: String::new(),

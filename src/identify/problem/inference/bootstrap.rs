@@ -10,13 +10,13 @@
 //! References: [Efron & Tibshirani 1993](gapilib_base::bibliography#efron-tibshirani-1993), chapters 9,
 //! 13 and 14; [Davison & Hinkley 1997](gapilib_base::bibliography#davison-hinkley-1997), chapter 6.
 
+use super::Local;
 use super::least_squares::Data;
-use super::{Local, PRIOR};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
 use crate::problem::distributions::{normal_below, normal_quantile};
-use crate::problem::{Problem, Run, Simulate, other_shards};
+use crate::problem::{ErrorModel, Problem, Role, Run, Simulate, other_shards};
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -99,6 +99,10 @@ pub struct Bootstrapped {
     pub(crate) at_bounds: f64,
 }
 
+/// Why there is none with deviations that change with the parameters, which the fits hold.
+const OF_COMPUTED: &str = "There is no bootstrap where the model computes the standard deviations: \
+     the profiles and the posterior tell how well the parameters are known.";
+
 /// The bootstrap; `None` where it is refused.
 pub fn bootstrap(
     run: &Run,
@@ -107,6 +111,10 @@ pub fn bootstrap(
     refusals: &mut Vec<String>,
 ) -> Result<Option<Bootstrap>, Fault> {
     let (problem, evaluation) = (&run.problem, &run.evaluation);
+    if ErrorModel::of(problem) == ErrorModel::Computed {
+        refusals.push(OF_COMPUTED.to_owned());
+        return Ok(None);
+    }
     let measured: Vec<f64> = problem.series.iter().flat_map(|series| series.y.clone()).collect();
     let source = Mrg32k3a::new(&problem.seed)?.stream(STREAM);
     let begun = AtomicUsize::new(0);
@@ -195,7 +203,7 @@ fn drawn(
         let mean = local.residuals[own.clone()].iter().sum::<f64>() / n as f64;
         // A prior is one point whose distribution is known: it is drawn from that.
         let resampling =
-            if series.experiment == PRIOR { Resampling::Parametric } else { resampling };
+            if series.role == Role::Prior { Resampling::Parametric } else { resampling };
         match resampling {
             Resampling::Residuals => {
                 for place in own.clone() {

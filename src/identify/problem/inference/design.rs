@@ -14,7 +14,7 @@
 
 use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
-use super::{Curve, CurveRequest, Local, PRIOR, Reach};
+use super::{Curve, CurveRequest, Local, Reach};
 use crate::diag::Fault;
 use crate::problem::Problem;
 use crate::registry::BAD_OPTION;
@@ -369,7 +369,7 @@ impl<'a> DesignSearch<'a> {
                 );
             }
             first += points;
-            if own[0].experiment == PRIOR {
+            if own.iter().all(|series| !series.is_data()) {
                 continue;
             }
             let x = own.iter().flat_map(|series| &series.x);

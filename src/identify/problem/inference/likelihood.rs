@@ -1,6 +1,5 @@
 //! The likelihood of a fit with normal errors.
 
-use super::PRIOR;
 use crate::elementary;
 use crate::problem::{ErrorModel, Problem, Run, Series};
 use serde::{Deserialize, Serialize};
@@ -33,25 +32,29 @@ impl Likelihood {
         run.evaluation.scales()?;
         let simulated = run.evaluation.simulate(values).ok()?;
         let weights = run.evaluation.error_weights(problem, &simulated);
-        let data = || problem.series.iter().filter(|series| series.experiment != PRIOR);
-        let measured: Vec<f64> = data().flat_map(|series| series.y.iter().copied()).collect();
+        let data = || problem.series.iter().filter(|series| series.is_data());
+        let all = problem.series.iter();
+        let all = all.flat_map(|series| series.y.iter().map(|y| (*y, series.is_data())));
+        let measured: Vec<(f64, f64)> = all
+            .zip(simulated.iter().zip(&weights))
+            .filter(|((_, is_data), _)| *is_data)
+            .map(|((y, _), (s, weight))| (weight * (y - s), *weight))
+            .collect();
         let n = measured.len() as f64;
-        let points = measured.iter().zip(&simulated).zip(&weights);
-        let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
-        let of_weights: f64 =
-            weights[..measured.len()].iter().map(|weight| elementary::ln(*weight)).sum();
+        let square: f64 = measured.iter().map(|(r, _)| r * r).sum();
+        let of_weights: f64 = measured.iter().map(|(_, weight)| elementary::ln(*weight)).sum();
         let error_model = ErrorModel::of(problem);
         let mut names: Vec<&str> = data().filter_map(Series::deviation).collect();
         names.sort_unstable();
         names.dedup();
         let (of_residuals, deviations) = match error_model {
             ErrorModel::OneVariance => (0.5 * n * (elementary::ln(square / n) + 1.0), 1),
-            ErrorModel::Known => (0.5 * square, 0),
+            ErrorModel::Known | ErrorModel::Computed => (0.5 * square, 0),
             ErrorModel::Estimated => (0.5 * square, names.len()),
         };
         let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU) - logarithms(problem);
         let estimated = values.len() + deviations;
-        let known_sigma = error_model == ErrorModel::Known;
+        let known_sigma = matches!(error_model, ErrorModel::Known | ErrorModel::Computed);
         let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
         log.is_finite().then_some(found)
     }

@@ -22,7 +22,7 @@ mod term;
 
 pub use adjusted::{Adjustments, Cause, Distribution, Prior, adjust};
 
-pub(crate) use adjusted::{PRIOR, adjusted_from};
+pub(crate) use adjusted::adjusted_from;
 pub use bands::{Band, BandPoint};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
 pub use comparison::{Compared, Comparison, Nested, compare};

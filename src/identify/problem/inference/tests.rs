@@ -81,6 +81,7 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         x: x.to_vec(),
         y: y.to_vec(),
         weight: 1.0,
+        role: Default::default(),
         relative: Vec::new(),
         sigma: Sigma::Unknown,
         column: "y".into(),

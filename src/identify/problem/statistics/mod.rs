@@ -26,7 +26,7 @@ use super::confirmed::is_confirmed;
 use super::non_identifiable::{self, Form, NonIdentifiable, Rank};
 use super::sensitivities::Sensitivities;
 use super::separable::Combination;
-use super::{ErrorModel, Evaluation, Problem, Series};
+use super::{ErrorModel, Evaluation, Problem, Role, Series};
 use crate::{Uncertainty, error_of_combination, uncertainty_given};
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;
@@ -98,8 +98,14 @@ pub struct Statistics {
     pub jacobian: Vec<Vec<f64>>,
     /// Simulations that it took.
     pub simulations: u64,
-    /// What each point counts.
+    /// What the square of each residual counts.
     pub(super) shares: Vec<f64>,
+    /// What derivatives of the points are multiplied with to become sensitivities.
+    scales: Vec<f64>,
+    /// The sum of squares that least squares minimize.
+    pub(super) searched: f64,
+    /// Whether it is a likelihood with deviations that the model computes.
+    error_model: ErrorModel,
     /// Singular values below this part of the largest are none.
     rank_tolerance: f64,
     /// What the solver's tolerance is multiplied with when derivatives are taken.
@@ -107,13 +113,16 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// The largest weighted sum of squares within the 95 % limit of the likelihood.
+    /// The largest sum of squares, as least squares minimize it, within the 95 % limit of the
+    /// likelihood.
     pub(super) fn limit_of_squares(&self) -> f64 {
-        let square: f64 = self.residuals.iter().map(|r| r * r).sum();
         let rise = elementary::powi(self.quantile_of_squares(), 2);
         match self.believed {
-            true => square + rise,
-            false => square * (1.0 + rise / self.freedom),
+            true if self.error_model == ErrorModel::Computed => {
+                self.searched * elementary::exp(rise / self.residuals.len() as f64)
+            }
+            true => self.searched + rise,
+            false => self.searched * (1.0 + rise / self.freedom),
         }
     }
 
@@ -132,9 +141,10 @@ impl Statistics {
     /// is no datum: it takes a point away and the parameter that this point would determine, so that
     /// the degrees of freedom are those of all points.
     pub(super) fn chi_square(&self, problem: &Problem, without: &[usize]) -> f64 {
-        let is_datum = problem.series.iter().flat_map(|series| {
-            std::iter::repeat_n(series.experiment != super::inference::PRIOR, series.x.len())
-        });
+        let is_datum = problem
+            .series
+            .iter()
+            .flat_map(|series| std::iter::repeat_n(series.is_data(), series.x.len()));
         let points = self.residuals.iter().zip(&self.shares).zip(is_datum).enumerate();
         let kept = points.filter(|(j, (_, is_datum))| *is_datum && !without.contains(j));
         kept.map(|(_, ((r, share), _))| share * r * r).sum()
@@ -171,12 +181,14 @@ impl Statistics {
             jacobian,
             simulations,
             shares: data.shares.clone(),
+            scales: data.scales.clone(),
+            searched: data.searched,
+            error_model: ErrorModel::of(problem),
             rank_tolerance: rank_tolerance(problem.noise * fineness),
             fineness,
         };
         found.estimate_errors(problem, evaluation, &data, &best);
-        let limit = data.square + elementary::powi(found.quantile, 2) * found.variance;
-        found.find_rank(problem, evaluation, (&best, simulated), others, &data.scales, limit);
+        found.find_rank(problem, evaluation, (&best, simulated), others, &data);
         let groups = found.rank.non_identifiable.iter().filter(|group| group.form != Form::Local);
         found.open = groups.map(|group| group.excess).sum();
         if !found.rank.non_identifiable.is_empty() {
@@ -227,17 +239,16 @@ impl Statistics {
         (self.believed, self.robust) = (spread.believed, spread.robust);
     }
 
-    /// Finds which parameters have no effect, and which act only together, where the weighted sum of
-    /// squares may rise up to `limit`.
+    /// Finds which parameters have no effect, and which act only together.
     fn find_rank(
         &mut self,
         problem: &Problem,
         evaluation: &Evaluation,
         (best, simulated): (&Sensitivities, &[f64]),
         others: &[Vec<f64>],
-        scales: &[f64],
-        limit: f64,
+        data: &Data,
     ) {
+        let scales = &data.scales[..];
         let mut rank = non_identifiable::rank(best, &[], self.rank_tolerance);
         if !rank.non_identifiable.is_empty() {
             let elsewhere = self.elsewhere(problem, evaluation, others, scales);
@@ -248,12 +259,9 @@ impl Statistics {
             let is_exact = problem.noise * self.fineness <= EXACT;
             rank.non_identifiable.retain(|group| is_exact || group.form != Form::Local);
         }
-        let measured: Vec<f64> =
-            problem.series.iter().flat_map(|series| series.y.iter().copied()).collect();
-        let is_within = |row: &[f64]| {
-            let points = measured.iter().zip(row).zip(scales);
-            points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() <= limit
-        };
+        let rise = elementary::powi(self.quantile, 2) * self.variance;
+        let is_within =
+            |row: &[f64]| rise_of_squares(problem, evaluation, data, (simulated, row)) <= rise;
         for group in rank.non_identifiable {
             if group.form == Form::Function {
                 self.rank.non_identifiable.push(group);
@@ -331,13 +339,16 @@ impl Statistics {
 /// The data as they count at one place.
 struct Data {
     weights: Vec<f64>,
-    /// What each point counts: less than 1 where several series hold the same numbers.
+    /// What the square of each residual counts: less than 1 where several series hold the same
+    /// numbers, nothing where it is one of a deviation.
     shares: Vec<f64>,
-    /// Weights with shares.
+    /// Weights with shares, of deviations whole.
     scales: Vec<f64>,
     residuals: Vec<f64>,
     /// Weighted sum of squares.
     square: f64,
+    /// The sum of squares that least squares minimize.
+    searched: f64,
 }
 
 impl Data {
@@ -349,16 +360,21 @@ impl Data {
     ) -> Data {
         let shares = shares(&problem.series, repeated);
         let weights: Vec<f64> = evaluation.error_weights(problem, simulated);
-        let scales = weights.iter().zip(&shares).map(|(w, s)| w * s.sqrt()).collect();
-        let measured = problem.series.iter().flat_map(|series| &series.y);
-        let pairs = measured.zip(simulated).zip(&weights);
-        let residuals: Vec<f64> = pairs.map(|((m, s), w)| w * (m - s)).collect();
+        // A deviation tells of the parameters, though nothing is compared with it.
+        let is_deviation = problem.series.iter().flat_map(|series| {
+            std::iter::repeat_n(matches!(series.role, Role::Deviation(_)), series.y.len())
+        });
+        let scales = weights.iter().zip(&shares).zip(is_deviation);
+        let scales = scales.map(|((w, s), whole)| if whole { *w } else { w * s.sqrt() }).collect();
+        let residuals = evaluation.standard_residuals(problem, simulated);
         let square = residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum();
-        Data { weights, shares, scales, residuals, square }
+        let searched = evaluation.searched_sum(problem, simulated);
+        Data { weights, shares, scales, residuals, square, searched }
     }
 
     fn shared_residuals(&self) -> Vec<f64> {
-        self.residuals.iter().zip(&self.shares).map(|(r, share)| r * share.sqrt()).collect()
+        let parts = self.residuals.iter().zip(&self.scales).zip(&self.weights);
+        parts.map(|((r, scale), weight)| r * scale / weight).collect()
     }
 }
 
@@ -387,7 +403,7 @@ impl Spread {
         let plain =
             robust.is_none() && evaluation.scales().is_some_and(|own| own == evaluation.weights());
         let believed = plain
-            && ErrorModel::of(problem) == ErrorModel::Known
+            && matches!(ErrorModel::of(problem), ErrorModel::Known | ErrorModel::Computed)
             && problem.objectives[0].0 != "log_likelihood";
         let effective = freedom::effective(problem, columns, freedom);
         let variance = match robust {
@@ -414,9 +430,7 @@ impl Statistics {
     /// The standard error of Σ wₖ pₖ, also where the data determine no pₖ alone; `None` where there
     /// are no standard errors.
     pub(super) fn error_of(&self, weights: &[f64]) -> Option<f64> {
-        let shares = self.shares.iter().map(|share| share.sqrt());
-        let scales: Vec<f64> = self.weights.iter().zip(shares).map(|(w, s)| w * s).collect();
-        let columns = weighted(&self.jacobian, &scales);
+        let columns = weighted(&self.jacobian, &self.scales);
         self.uncertainty.as_ref()?;
         error_of_combination(&columns, weights, self.variance, self.rank_tolerance)
     }
@@ -490,9 +504,28 @@ fn inward(problem: &Problem, values: &[f64], found: Option<&Uncertainty>) -> Vec
     (0..values.len()).map(side).collect()
 }
 
+/// By how much the weighted sum of squares, or twice the negative log-likelihood, rises from the best
+/// simulation to another one.
+fn rise_of_squares(
+    problem: &Problem,
+    evaluation: &Evaluation,
+    data: &Data,
+    (best, row): (&[f64], &[f64]),
+) -> f64 {
+    if ErrorModel::of(problem) == ErrorModel::Computed {
+        return 2.0 * (evaluation.objective(problem, row) - evaluation.objective(problem, best));
+    }
+    let measured = problem.series.iter().flat_map(|series| &series.y);
+    let points = measured.zip(row).zip(&data.scales);
+    points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() - data.square
+}
+
 /// Series of the same numbers as an earlier one.
 fn repeated(series: &[Series]) -> Vec<(usize, usize)> {
-    let same = |a: &Series, b: &Series| a.y.len() >= 3 && a.x == b.x && a.y == b.y;
+    let is_deviation = |own: &Series| matches!(own.role, Role::Deviation(_));
+    let same = |a: &Series, b: &Series| {
+        a.y.len() >= 3 && a.x == b.x && a.y == b.y && !is_deviation(a) && !is_deviation(b)
+    };
     let pair = |k: usize| (0..k).find(|&l| same(&series[k], &series[l])).map(|l| (k, l));
     (0..series.len()).filter_map(pair).collect()
 }
@@ -501,7 +534,12 @@ fn repeated(series: &[Series]) -> Vec<(usize, usize)> {
 fn shares(series: &[Series], repeated: &[(usize, usize)]) -> Vec<f64> {
     let first = |k: usize| repeated.iter().find(|pair| pair.0 == k).map_or(k, |pair| pair.1);
     let count = |k: usize| (0..series.len()).filter(|l| first(*l) == first(k)).count() as f64;
-    series.iter().enumerate().flat_map(|(k, own)| vec![1.0 / count(k); own.y.len()]).collect()
+    let share = |(k, own): (usize, &Series)| match own.role {
+        Role::Deviation(_) => 0.0,
+        _ => 1.0 / count(k),
+    };
+    let all = series.iter().enumerate();
+    all.flat_map(|own| std::iter::repeat_n(share(own), own.1.y.len())).collect()
 }
 
 fn weighted(jacobian: &[Vec<f64>], scales: &[f64]) -> Vec<Vec<f64>> {

@@ -22,7 +22,7 @@ use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::{Cause, adjust};
 use crate::identify::problem::{
     Experiment, Free, Inference, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS, Origins,
-    Problem, Series, Simulate, Stop, decide, likelihood,
+    Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::mat::MatFile;
 use crate::registry::{self, BAD_OPTION, Options};
@@ -313,7 +313,8 @@ fn objectives(
     series: &[Series],
     noise: f64,
 ) -> Result<Vec<Objective>, Vec<Diagnostic>> {
-    if series.iter().any(|series| series.sigma.is_estimated()) {
+    let is_computed = |own: &Series| matches!(own.sigma, Sigma::Variable(_));
+    if series.iter().any(|own| own.sigma.is_estimated() || is_computed(own)) {
         return likelihood_alone(file, series, noise).map_err(alone);
     }
     let names = match &file.fitness {
@@ -350,7 +351,7 @@ fn objectives(
     Ok(objectives)
 }
 
-/// Estimated deviations have one objective: the likelihood.
+/// Deviations that are estimated or that the model computes have one objective: the likelihood.
 fn likelihood_alone(
     file: &ProblemFile,
     series: &[Series],
@@ -368,8 +369,8 @@ fn likelihood_alone(
     if !allowed {
         let fault = fault!(
             BAD_OPTION,
-            "`sigma = \"estimate\"` minimizes the negative log-likelihood and cannot be combined \
-             with another fitness";
+            "a sigma that is estimated or computed by the model minimizes the negative \
+             log-likelihood and cannot be combined with another fitness";
             help: "remove `fitness`, or give sigmas as numbers"
         );
         return Err(fault.at(file.places.at(&["fitness"])));

@@ -2,7 +2,7 @@
 //! found. Modelica modifies arrays as a whole, so that elements are written with their neighbors.
 
 use super::file::{ProblemFile, Role, ValueEntry};
-use super::{dynamics, enclosing_class};
+use super::{deviation, dynamics, enclosing_class};
 use crate::codegen::Program;
 use crate::identify::problem::{CalibratedModel, Solution, modelica_number};
 use crate::source::Span;
@@ -34,7 +34,8 @@ impl Calibration {
         let shared = file
             .parameters
             .iter()
-            .filter(|(name, one)| !one.per_experiment && !dynamics::is_delay(file, name));
+            .filter(|(name, one)| !one.per_experiment && !dynamics::is_delay(file, name))
+            .filter(|(name, _)| program.find_parameter(&deviation::parameter(name)).is_err());
         let entry = |(name, parameter): (&String, &super::file::ParameterEntry)| {
             let text = match parameter.role(name).ok()? {
                 Role::Free { .. } => None,

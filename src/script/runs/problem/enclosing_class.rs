@@ -84,6 +84,18 @@ impl Rewrite for QuotedNames {
     }
 }
 
+/// The names in an expression.
+pub(super) struct References(pub Vec<String>);
+
+impl Rewrite for References {
+    fn expression(&mut self, e: &mut Expression) {
+        if let ExpressionKind::Reference(_) = &e.kind {
+            self.0.push(crate::syntax::print::expression(e));
+        }
+        rewrite_expression(self, e);
+    }
+}
+
 /// A value of a problem's file. Whole numbers fit Integers and Reals.
 ///
 /// # Errors
@@ -115,6 +127,11 @@ pub(super) fn own_name(purpose: &str, name: &str) -> String {
     let plain: String =
         name.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { ' ' }).collect();
     format!("'{purpose} {}'", plain.trim())
+}
+
+/// The variable of the class that has the standard deviation of an output.
+pub(super) fn deviation_of(y_name: &str) -> String {
+    own_name("standard deviation of", y_name)
 }
 
 /// Modifications, declarations and equations that a class around the model has.

@@ -7,7 +7,7 @@ use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile};
 use super::inputs::{self, Times, Undecided};
 use super::segments::{Rows, Segment, segments};
 use super::series::Comparison;
-use super::{dynamics, enclosing_class, frequency_axis, parameters, time_axis};
+use super::{deviation, dynamics, enclosing_class, frequency_axis, parameters, time_axis};
 use crate::Session;
 use crate::codegen::Program;
 use crate::diag::{At as _, Diagnostic, Fault};
@@ -238,6 +238,7 @@ impl Source<'_> {
             settings,
             second_attempt: true,
             x_name: abscissa.name.clone(),
+            deviations: series.iter().filter(|own| !own.is_data()).count(),
             observations,
             parameters,
         };
@@ -314,7 +315,15 @@ impl Source<'_> {
         let here = (self.number, entry.places.at(&["data"]));
         let mut enclosing = EnclosingClass::default();
         let (label, segment, free) = (self.label, self.segment, self.free);
-        let setting = parameters::Setting { file, entry, label, segment, free };
+        let setting = parameters::Setting { file, entry, label, segment, free, of_deviations: &[] };
+        let formulas = deviation::formulas(entry, self.table);
+        let mut of_deviations = Vec::new();
+        if !formulas.is_empty() {
+            let flat = simulation::flattened(session, &file.model)?.model;
+            of_deviations = deviation::declare(formulas, file, &flat, &mut enclosing)
+                .map_err(|error| vec![error])?;
+        }
+        let setting = parameters::Setting { of_deviations: &of_deviations, ..setting };
         let parameters = setting.parameters(&mut enclosing).map_err(|error| vec![error])?;
         note_used_twice(entry, notes);
         note_swapped(entry, notes);

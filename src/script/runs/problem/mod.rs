@@ -11,6 +11,7 @@ mod calibration;
 mod constraint;
 mod control;
 mod data;
+mod deviation;
 mod draft;
 mod draft_subject;
 mod driven;

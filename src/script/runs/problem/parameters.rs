@@ -2,11 +2,11 @@
 //! the free ones, which the search sets before each simulation.
 
 use super::data::Notes;
-use super::dynamics;
-use super::enclosing_class::{self, EnclosingClass, QuotedNames, own_name};
+use super::enclosing_class::{self, EnclosingClass, QuotedNames, References, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
 use super::flat::attribute;
 use super::segments::Segment;
+use super::{deviation, dynamics};
 use crate::Session;
 use crate::codegen::{Access, Program};
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
@@ -18,23 +18,11 @@ use crate::models::translated::Translated;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind};
-use crate::syntax::visit::{Rewrite, rewrite_expression};
+use crate::syntax::visit::Rewrite;
 use std::fmt::Write;
 
 /// Parts of a range at which not both values are zero.
 const INSIDE: [f64; 2] = [0.5, 0.75];
-
-/// The names in an expression.
-struct References(Vec<String>);
-
-impl Rewrite for References {
-    fn expression(&mut self, e: &mut Expression) {
-        if let ExpressionKind::Reference(_) = &e.kind {
-            self.0.push(crate::syntax::print::expression(e));
-        }
-        rewrite_expression(self, e);
-    }
-}
 
 /// An experiment whose parameters are set.
 pub(super) struct Setting<'a> {
@@ -45,6 +33,8 @@ pub(super) struct Setting<'a> {
     /// The part of the experiment.
     pub segment: &'a Segment,
     pub free: &'a [Free],
+    /// Parameters that only formulas for deviations have.
+    pub of_deviations: &'a [String],
 }
 
 impl Setting<'_> {
@@ -61,6 +51,13 @@ impl Setting<'_> {
         for (name, parameter) in &self.file.parameters {
             let place = self.file.places.parameter(name);
             let role = parameter.role(name).at(place)?;
+            if self.of_deviations.contains(name) {
+                let free = matches!(role, Role::Free { .. });
+                let free = free.then(|| self.free_place(name, parameter).at(place)).transpose()?;
+                let own = deviation::declare_parameter((name, &role), self.file, enclosing)?;
+                names.extend(free.map(|free| (free, own)));
+                continue;
+            }
             let value = match role {
                 Role::Free { .. } => {
                     let free = self.free_place(name, parameter).at(place)?;
@@ -257,7 +254,8 @@ pub(super) fn check_taken(
     model: &Translated,
 ) -> Result<(), Diagnostic> {
     let fixed = file.parameters.iter().filter_map(|(name, parameter)| {
-        let is_value = !parameter.initial && !dynamics::is_delay(file, name);
+        let is_own = model.program.find_parameter(&deviation::parameter(name)).is_ok();
+        let is_value = !parameter.initial && !dynamics::is_delay(file, name) && !is_own;
         let value = parameter.fixed.as_ref().filter(|_| is_value)?;
         Some((name, value, file.places.parameter(name)))
     });

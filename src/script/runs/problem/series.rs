@@ -7,7 +7,7 @@ use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
 use super::{sigma, time_axis};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
-use crate::identify::problem::{Observation, Series, Sigma};
+use crate::identify::problem::{Observation, Role, Series, Sigma};
 use crate::mat::{Column, MatFile};
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
@@ -65,7 +65,33 @@ impl Comparison<'_> {
             observations.push(Observation { y_name: observed.clone(), x: one.x.clone() });
             series.push(one);
         }
+        let n_outputs = series.len();
+        for k in 0..n_outputs {
+            let Sigma::Variable(name) = series[k].sigma.clone() else { continue };
+            self.same_unit(&name, &series[k].y_name).at(self.entry.places.at(&[
+                "outputs",
+                &series[k].y_name,
+                "sigma",
+            ]))?;
+            observations.push(Observation { y_name: name.clone(), x: series[k].x.clone() });
+            series.push(series[k].deviations(&name, series.len() - k));
+        }
         Ok((observations, series))
+    }
+
+    /// Refuses deviations in another unit than their output.
+    fn same_unit(&self, deviation: &str, y_name: &str) -> Result<(), Fault> {
+        let mut outputs = self.entry.all_outputs();
+        let is_logarithm = outputs.any(|(name, own)| name == y_name && own.error.is_some());
+        let [own, of] = [deviation, y_name].map(|name| self.unit(name).symbol);
+        if is_logarithm || own.is_empty() || of.is_empty() || own == of {
+            return Ok(());
+        }
+        bail!(
+            BAD_OPTION,
+            "the sigma of `{y_name}` is in {own}, but `{y_name}` is in {of}";
+            help: "write a formula that converts it, as `\"{deviation}*1000\"`"
+        )
     }
 
     fn output(
@@ -84,7 +110,8 @@ impl Comparison<'_> {
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
         let factor =
             data::sigma_factor(table, requested.sigma.as_ref(), &own_unit, measured.factor);
-        let sigma = sigma::sigma(requested.sigma.as_ref(), y_name, table, factor, count)?;
+        let of = (y_name, self.model);
+        let sigma = sigma::sigma(requested.sigma.as_ref(), of, table, factor, count)?;
         let measured_in = |row: &usize| {
             self.x.get(*row).is_some_and(|x| x.is_finite()) && measured.values[*row].is_finite()
         };
@@ -107,6 +134,7 @@ impl Comparison<'_> {
         note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
         let weight = self.weight(y_name, requested)?;
         Ok(Series {
+            role: Role::Data,
             experiment: self.experiment.to_owned(),
             y_name: y_name.to_owned(),
             y_unit: data::shown_unit(unit, requested, &column.about),

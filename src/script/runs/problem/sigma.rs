@@ -1,8 +1,11 @@
 //! The standard deviation of a measurement as the problem file gives it: a number, a column of the
-//! data, a formula of the output, `estimate`, or `estimate NAME` where outputs share it.
+//! data, a formula of the output, `estimate`, or `estimate NAME` where outputs share it; a variable
+//! of the model, or a formula of such (`deviation.rs`).
 
+use super::enclosing_class::deviation_of;
 use super::file::SigmaEntry;
 use crate::diag::Fault;
+use crate::identify::Model;
 use crate::identify::problem::{Sigma, SigmaFormula};
 use crate::mat::MatFile;
 use crate::registry::BAD_OPTION;
@@ -22,7 +25,7 @@ const ESTIMATE: &str = "estimate";
 /// Numbers that are not positive, strings that are neither a column nor a formula of the output.
 pub(super) fn sigma(
     entry: Option<&SigmaEntry>,
-    name: &str,
+    (name, model): (&str, &dyn Model),
     table: &MatFile,
     factor: f64,
     rows: usize,
@@ -46,9 +49,18 @@ pub(super) fn sigma(
                 }
                 Ok(Sigma::Given(column.values.iter().map(|v| v * factor.abs()).collect()))
             }
-            Err(_) => formula(name, words).map(Sigma::Formula),
+            Err(_) if is_of_output(words, name) => formula(name, words).map(Sigma::Formula),
+            Err(_) => match of_model(name, words, model) {
+                Some(variable) => Ok(Sigma::Variable(variable)),
+                None => formula(name, words).map(Sigma::Formula),
+            },
         },
     }
+}
+
+/// Whether these words need nothing but the output: `estimate`, or a formula of it.
+pub(super) fn is_of_output(words: &str, name: &str) -> bool {
+    words == ESTIMATE || shared(words).is_some() || formula(name, words).is_ok()
 }
 
 /// The name in `estimate NAME`.
@@ -56,6 +68,13 @@ fn shared(words: &str) -> Option<String> {
     let name = words.strip_prefix(ESTIMATE)?.strip_prefix(' ')?.trim();
     let is_name = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_');
     is_name.then(|| name.to_owned())
+}
+
+/// The variable that has the deviation: that of the class around the model, or one of the model.
+fn of_model(name: &str, words: &str, model: &dyn Model) -> Option<String> {
+    let own = deviation_of(name);
+    let mut both = [own, words.to_owned()].into_iter();
+    both.find(|variable| model.unit(variable).is_some())
 }
 
 /// Refuses what cannot be a standard deviation.
@@ -76,8 +95,8 @@ fn formula(name: &str, text: &str) -> Result<SigmaFormula, Fault> {
         fault!(
             BAD_OPTION,
             "the sigma of `{name}` is `{text}`, which is neither a column of the data nor a \
-             formula in terms of the output";
-            help: "write a number, the name of a column, \"estimate\", or a formula such as \"0.01 + 0.05*abs({name})\" of numbers, `{name}` (or `y`), + - * / ^, abs, sqrt, exp, log, min and max"
+             formula in terms of the output, of variables of the model and of parameters";
+            help: "write a number, the name of a column, \"estimate\", or a formula such as \"0.01 + 0.05*abs({name})\""
         )
     };
     let tree = crate::syntax::parse_expression(SourceId::NONE, text).map_err(|_| not())?;

@@ -233,12 +233,10 @@ struct Density<'a> {
 impl<'a> Density<'a> {
     fn new(run: &'a Run, local: &'a Local) -> Density<'a> {
         let (problem, evaluation) = (&run.problem, &run.evaluation);
-        let error_model = match local.known {
-            true => ErrorModel::Known,
+        let error_model = match ErrorModel::of(problem) {
             // Deviations that are given but not believed share one unknown factor.
-            false => Some(ErrorModel::of(problem))
-                .filter(|model| *model != ErrorModel::Known)
-                .unwrap_or(ErrorModel::OneVariance),
+            ErrorModel::Known if !local.known => ErrorModel::OneVariance,
+            own => own,
         };
         let measured = problem.series.iter().flat_map(|series| series.y.clone()).collect();
         Density { problem, evaluation, local, error_model, measured }
@@ -255,8 +253,10 @@ impl<'a> Density<'a> {
             return f64::NEG_INFINITY;
         }
         let likelihood = match self.error_model {
-            // Concentrated: the objective is the negative logarithm itself.
-            ErrorModel::Estimated => -self.evaluation.objective(self.problem, &row),
+            // The objective is the negative logarithm itself.
+            ErrorModel::Estimated | ErrorModel::Computed => {
+                -self.evaluation.objective(self.problem, &row)
+            }
             ErrorModel::Known => -0.5 * self.square(&row),
             ErrorModel::OneVariance => {
                 -0.5 * self.measured.len() as f64 * elementary::ln(self.square(&row))

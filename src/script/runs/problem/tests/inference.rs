@@ -367,3 +367,82 @@ fn a_prior_is_weighed_against_a_sigma_that_is_estimated() {
     let derivative = -4.0 * sum / square + p / 0.25;
     assert!(derivative.abs() < 1e-4, "{derivative}\n{}", solution.text());
 }
+
+/// c exp(-k t) with normal errors of standard deviation a + b y.
+const DECLINE: &str = "1.82799, 1.69848, 1.50309, 1.32431, 1.24172, 1.09779, 1.06899, 1.05214, \
+    0.8629, 0.78171, 0.76625, 0.69488, 0.62506, 0.53161, 0.51743, 0.49728, 0.39052, 0.38217, \
+    0.30833, 0.29639, 0.2559, 0.27054, 0.2237, 0.23649, 0.21402, 0.18899, 0.12875, 0.1512, \
+    0.14623, 0.13631, 0.09814, 0.10481, 0.0878, 0.08189, 0.10086, 0.06709, 0.07114, 0.07716, \
+    0.05221, 0.05323";
+
+/// The same data with sigma as a formula of the problem and as a variable of the model, whole and in
+/// two experiments.
+fn declines() -> [Solution; 3] {
+    let mut rows: Vec<String> = DECLINE.split(", ").map(str::trim).map(str::to_owned).collect();
+    rows.iter_mut().enumerate().for_each(|(k, y)| *y = format!("{},{y}", (k + 1) as f64 / 10.0));
+    let table = |rows: &[String]| format!("time,y\n{}\n", rows.join("\n"));
+    let model = "model M\n  parameter Real k = 1;\n  parameter Real c = 1;\n  \
+                 parameter Real a = 0.1;\n  parameter Real b = 0.1;\n  \
+                 Real y(start = c, fixed = true);\n  Real sd = a + b*y;\n\
+                 equation\n  der(y) = -k*y;\nend M;\n";
+    let bare = model.replace("  parameter Real a = 0.1;\n  parameter Real b = 0.1;\n", "");
+    let bare = bare.replace("  Real sd = a + b*y;\n", "");
+    let problem = |experiments: &str| {
+        format!(
+            "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+             k = {{ min = 0.1, max = 9 }}\nc = {{ min = 0.1, max = 9 }}\n\
+             a = {{ min = 1e-4, max = 1 }}\nb = {{ min = 1e-4, max = 1 }}\n{experiments}"
+        )
+    };
+    let experiment = |data: &str, sigma: &str| {
+        format!(
+            "[[experiment]]\ndata = \"{data}\"\ntolerance = 1e-9\n\
+             outputs = {{ y = {{ column = \"y\", sigma = \"{sigma}\" }} }}\n"
+        )
+    };
+    let formula = problem(&experiment("d.csv", "a + b*abs(y)"));
+    let variable = problem(&experiment("d.csv", "sd"));
+    let two = problem(&(experiment("e.csv", "a + b*y") + &experiment("f.csv", "b*y + a")));
+    let files = |problem: String, model: &str| {
+        let files = [
+            ("p.toml", problem),
+            ("M.mo", model.to_owned()),
+            ("d.csv", table(&rows)),
+            ("e.csv", table(&rows[..13])),
+            ("f.csv", table(&rows[13..])),
+        ];
+        solved_with(&files, &RunOptions { profile: true, ..RunOptions::default() })
+    };
+    [files(formula, &bare), files(variable, model), files(two, &bare)]
+}
+
+/// Values, -log L and standard errors (from the Fisher information) by SciPy.
+#[test]
+fn sigma_is_a_formula_with_estimated_parameters() {
+    let expected = [
+        ("k", 0.92439134, 0.01113404),
+        ("c", 2.00725334, 0.03260019),
+        ("a", 0.00987376, 0.00265892),
+        ("b", 0.03346339, 0.00888293),
+    ];
+    for solution in declines() {
+        let text = solution.text();
+        for (name, best, error) in expected {
+            let own = solution.parameters.iter().find(|own| own.name == name).unwrap();
+            assert!((own.value / best - 1.0).abs() < 2e-5, "{name} {best}\n{text}");
+            let found = own.deviation.unwrap();
+            assert!((found / error - 1.0).abs() < 1e-4, "{name} {found} {error}\n{text}");
+        }
+        let found = solution.likelihood.negative_log_likelihood.unwrap();
+        assert!((found + 94.5096237308639).abs() < 1e-6, "{found}\n{text}");
+        assert!(solution.outcome.ending.kind == EndingKind::Minimum, "{text}");
+        assert!(solution.likelihood.chi_square.is_some(), "{text}");
+        let points: usize = solution.series.iter().map(|own| own.points.len()).sum();
+        assert_eq!(points, 40, "deviations are no data\n{text}");
+        // Where -log L rises by half of 3.84 in the profile.
+        let profiles = solution.profiles.as_ref().unwrap();
+        let [Some(low), Some(high)] = profiles.profiles[3].interval else { panic!("{text}") };
+        assert!((low / 0.0157401 - 1.0).abs() < 1e-3, "{low}\n{text}");
+        assert!((high / 0.0593620 - 1.0).abs() < 1e-3, "{high}\n{text}");
+    }
+}

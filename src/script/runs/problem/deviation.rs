@@ -1,0 +1,160 @@
+//! Standard deviations that are formulas of variables and parameters, such as `a + b*abs(y)`: they
+//! become variables of the class around the model. Parameters of the problem that the model does not
+//! have are declared there.
+
+use super::enclosing_class::{
+    EnclosingClass, References, deviation_of, expression, literal, own_name, reference,
+};
+use super::file::{ExperimentEntry, ProblemFile, Role, SigmaEntry};
+use super::sigma;
+use crate::diag::{At as _, Diagnostic, suggest};
+use crate::fault;
+use crate::flatten::FlatModel;
+use crate::mat::MatFile;
+use crate::registry::BAD_OPTION;
+use crate::source::Span;
+use crate::syntax::ast::{Expression, ExpressionKind};
+use crate::syntax::print;
+use crate::syntax::visit::{Rewrite, rewrite_expression};
+use std::fmt::Write;
+
+/// A formula for the deviation of an output.
+pub(super) struct Formula {
+    y_name: String,
+    tree: Expression,
+    place: Span,
+}
+
+/// What the class around the model calls a parameter that only deviations have.
+pub(super) fn parameter(name: &str) -> String {
+    own_name("parameter of deviations", name)
+}
+
+/// The formulas of an experiment that contain more than their output.
+pub(super) fn formulas(entry: &ExperimentEntry, table: &MatFile) -> Vec<Formula> {
+    let mut found: Vec<Formula> = Vec::new();
+    for (y_name, column) in entry.all_outputs() {
+        let Some(SigmaEntry::Words(text)) = &column.sigma else { continue };
+        let is_known = found.iter().any(|own| own.y_name == *y_name);
+        if is_known || sigma::is_of_output(text, y_name) || table.column(text).is_ok() {
+            continue;
+        }
+        let way = ["outputs", y_name, "sigma"];
+        // What is no expression is refused with the data.
+        let Ok(mut tree) = expression(text, entry.places.text(&way)) else { continue };
+        let mut names = References(Vec::new());
+        names.expression(&mut tree);
+        if !names.0.is_empty() {
+            OwnOutput(y_name).expression(&mut tree);
+            found.push(Formula { y_name: y_name.clone(), tree, place: entry.places.at(&way) });
+        }
+    }
+    found
+}
+
+/// `y` in a formula is its output.
+struct OwnOutput<'a>(&'a str);
+
+impl Rewrite for OwnOutput<'_> {
+    fn expression(&mut self, e: &mut Expression) {
+        if matches!(e.kind, ExpressionKind::Reference(_)) && print::expression(e) == "y" {
+            e.kind = reference(self.0, e.span).kind;
+        }
+        rewrite_expression(self, e);
+    }
+}
+
+/// Parameters get the names that they have in the class.
+struct Renamed<'a>(&'a [String]);
+
+impl Rewrite for Renamed<'_> {
+    fn expression(&mut self, e: &mut Expression) {
+        let written = print::expression(e);
+        if matches!(e.kind, ExpressionKind::Reference(_)) && self.0.contains(&written) {
+            e.kind = reference(&parameter(&written), e.span).kind;
+        }
+        rewrite_expression(self, e);
+    }
+}
+
+/// Declares the deviations in the class around the model, and parameters that only they have; returns
+/// the names of these.
+///
+/// # Errors
+///
+/// Names that neither the model nor the problem has.
+pub(super) fn declare(
+    formulas: Vec<Formula>,
+    file: &ProblemFile,
+    flat: &FlatModel,
+    enclosing: &mut EnclosingClass,
+) -> Result<Vec<String>, Diagnostic> {
+    let of_model = |name: &str| {
+        let base = name.split('[').next().unwrap_or(name);
+        flat.variables.contains_key(name)
+            || flat.variables.keys().any(|own| own.split('[').next() == Some(base))
+    };
+    let mut own: Vec<String> = Vec::new();
+    for formula in &formulas {
+        let mut names = References(Vec::new());
+        names.expression(&mut formula.tree.clone());
+        for name in names.0 {
+            if of_model(&name) || own.contains(&name) {
+                continue;
+            }
+            if !file.parameters.contains_key(&name) {
+                return Err(unknown(&name, formula, (file, flat)));
+            }
+            own.push(name);
+        }
+    }
+    for mut formula in formulas {
+        Renamed(&own).expression(&mut formula.tree);
+        let (name, text) = (deviation_of(&formula.y_name), print::expression(&formula.tree));
+        // Writing into a String cannot fail.
+        _ = writeln!(enclosing.declarations, "  Real {name} = {text};");
+        enclosing.elements.push((name, format!("the standard deviation of {}", formula.y_name)));
+    }
+    Ok(own)
+}
+
+fn unknown(name: &str, formula: &Formula, (file, flat): (&ProblemFile, &FlatModel)) -> Diagnostic {
+    let known = flat.variables.keys().map(|own| &**own);
+    let known = known.chain(file.parameters.keys().map(String::as_str));
+    let near = suggest::nearest(name, known);
+    let fault = fault!(
+        BAD_OPTION,
+        "the sigma of `{}` contains `{name}`, which is neither a column of the data, nor a variable \
+         of the model, nor a parameter of the problem",
+        formula.y_name
+    );
+    let help = match near {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => {
+            format!("give it a range in `[parameters]`, as `{name} = {{ min = 0.1, max = 10 }}`")
+        }
+    };
+    fault.help(help).at(formula.place)
+}
+
+/// Declares a parameter that only deviations have in the class around the model; its name there.
+///
+/// # Errors
+///
+/// Values that are no numbers.
+pub(super) fn declare_parameter(
+    (name, role): (&str, &Role),
+    file: &ProblemFile,
+    enclosing: &mut EnclosingClass,
+) -> Result<String, Diagnostic> {
+    let place = file.places.parameter(name);
+    let value = match role {
+        Role::Free { range: [low, high], .. } => format!("{:e}", 0.5 * (low + high)),
+        Role::Fixed(value) => print::expression(&literal(value, name, place).at(place)?),
+        Role::Tied(text) => text.clone(),
+    };
+    let own = parameter(name);
+    _ = writeln!(enclosing.declarations, "  parameter Real {own} = {value};");
+    enclosing.elements.push((own.clone(), format!("the parameter {name} of deviations")));
+    Ok(own)
+}
