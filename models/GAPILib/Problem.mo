@@ -5,6 +5,9 @@ record Problem "What to identify, from which data, and how: the argument of iden
   String files[:] = fill("", 0) "Modelica files and folders to load";
   GAPILib.Free parameters[:] "Parameters to identify, to fix or to tie";
   GAPILib.Experiment experiments[:] "What was measured";
+  String noiseStates[:] = fill("", 0) "States on which process noise acts: what is measured is compared with its prediction from all earlier samples";
+  Real noiseValues[:] = fill(0.0, 0) "The standard deviations that it adds in 1 s; 0, or none, to estimate them";
+  Real noiseInitial[:] = fill(0.0, 0) "Standard deviations of the initial values of these states; none for 0";
   String fitness[:] = {"sum_of_squares"} "Fitness functions; several for nsga2";
   String method = "" "Optimizer; empty for the default";
   String settings[:] = fill("", 0) "Names of settings of the optimizer";

@@ -375,6 +375,10 @@
 //! - **cranley-patterson-1976** — R. Cranley, T. N. L. Patterson: Randomization of number theoretic
 //!   methods for multiple integration. SIAM Journal on Numerical Analysis 13(6), 1976, 904–914.
 //!
+//! <a id="jazwinski-1970"></a>
+//! - **jazwinski-1970** — A. H. Jazwinski: Stochastic Processes and Filtering Theory. Academic Press,
+//!   1970.
+//!
 //! <a id="van-loan-1978"></a>
 //! - **van-loan-1978** — C. F. Van Loan: Computing integrals involving the matrix exponential. IEEE
 //!   Transactions on Automatic Control 23(3), 1978, 395–404.

@@ -36,6 +36,11 @@ crate::codes! {
         "## What it means\nThe model cannot be linearized as a system from the input to the output: its states determine the input, it chooses its states at run time, or an equation depends on a derivative of the input that the linear system does not have.\n\n\
          ## Example\nThe voltage of a capacitor as an input, where the current is the output.\n\n\
          ## What to do\nTake the other variable of the connection as the input, or filter the input with a first-order block.",
+    /// A model whose states a Kalman filter cannot move.
+    NO_FILTER = "no-filter":
+        "## What it means\nProcess noise is requested for a model that a Kalman filter cannot follow: noise acts on a variable that is not a state, `reinit` sets an uncertain state, a discrete variable keeps a value of uncertain states, or the model has delays or chooses its states at run time.\n\n\
+         ## Example\n`[noise]` for the position of a ball whose velocity `reinit` reverses.\n\n\
+         ## What to do\nGive noise to states alone, and describe what happens at events by continuous equations.",
     /// A variable that the model does not have.
     UNKNOWN_VARIABLE = "unknown-variable":
         "## What it means\nThe model has no variable of this name.\n\n\

@@ -57,7 +57,7 @@ pub(crate) struct Previous {
     /// Whether every difference counts, not only one that is more than rounding.
     pub(crate) exact: bool,
     /// Whether it must be computed from the states before an event.
-    pub(super) computed: bool,
+    pub(in crate::codegen) computed: bool,
 }
 
 /// A rounding, compiled.

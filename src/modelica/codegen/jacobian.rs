@@ -100,6 +100,11 @@ impl<'a> Forward<'a> {
         chain(self.pool, e, &self.rows)
     }
 
+    /// The derivatives of a variable by column.
+    pub(super) fn row_of(&self, variable: VarId) -> BTreeMap<usize, Expr> {
+        self.rows.get(&variable).cloned().unwrap_or_default()
+    }
+
     /// The derivative of a variable.
     pub(super) fn of(&self, variable: VarId, column: usize) -> Option<Expr> {
         self.rows.get(&variable)?.get(&column).copied()

@@ -182,9 +182,8 @@ impl Made {
         let auxiliary: Vec<Assignment> =
             self.derivatives.sequence.iter().filter(is_new).copied().collect();
         for (number, assignment) in auxiliary.iter().enumerate() {
-            // They are numbered in the order of their assignments.
-            debug_assert_eq!(assignment.variable.0 as usize, self.first as usize + number);
-            add(sorted, *assignment, format!("'derivative {number}'"));
+            add(sorted, assignment.variable, format!("'derivative {number}'"));
+            solve_for(sorted, *assignment);
         }
         let mut entries = Vec::new();
         for (equation, row_of) in self.derivatives.rows.iter().enumerate() {
@@ -203,7 +202,8 @@ impl Made {
                     None => {
                         let name = format!("'derivative of equation {row} by unknown {column}'");
                         let variable = VarId(sorted.dae.variables.len() as u32);
-                        add(sorted, Assignment { variable, value, equation: 0 }, name.clone());
+                        add(sorted, variable, name.clone());
+                        solve_for(sorted, Assignment { variable, value, equation: 0 });
                         Ok(name)
                     }
                 };
@@ -252,15 +252,17 @@ fn columns(
     Ok(unknowns.iter().map(column).collect())
 }
 
-fn variable(sorted: &CausalizedDae, name: &str) -> Result<VarId, Fault> {
+/// The variable with this name.
+pub(super) fn variable(sorted: &CausalizedDae, name: &str) -> Result<VarId, Fault> {
     let found = sorted.dae.variables.iter().position(|variable| &*variable.name == name);
     found
         .map(|at| VarId(at as u32))
         .ok_or_else(|| fault!(NOT_LINEARIZED, "`{}` has no variable `{name}`", sorted.dae.name))
 }
 
-/// Adds a variable with its value, which must be the next one.
-fn add(sorted: &mut CausalizedDae, assignment: Assignment, name: String) {
+/// Adds a variable, which must be the next one.
+pub(super) fn add(sorted: &mut CausalizedDae, variable: VarId, name: String) {
+    debug_assert_eq!(variable.0 as usize, sorted.dae.variables.len());
     let empty: Arc<str> = "".into();
     sorted.dae.variables.push(Variable {
         name: name.into(),
@@ -284,6 +286,10 @@ fn add(sorted: &mut CausalizedDae, assignment: Assignment, name: String) {
         span: Span::NONE,
     });
     sorted.aliases.push(None);
+}
+
+/// Lets the system compute the value of a variable after all others.
+fn solve_for(sorted: &mut CausalizedDae, assignment: Assignment) {
     let CausalizedDae { blocks, event_blocks, initial_blocks, .. } = sorted;
     blocks.push(Block::Assignment(assignment));
     initial_blocks.push(Block::Assignment(assignment));

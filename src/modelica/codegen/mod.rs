@@ -6,6 +6,7 @@
 //! jacobian, sensitivity symbolic derivatives: forward mode, column by column
 //! tape_builder          expressions as instructions, common subexpressions once
 //! linear_part           the Jacobian as variables of the model
+//! filter                derivatives by uncertain states, for the equations of their covariance
 //! linearity             whether the right-hand side is affine between events
 //! hoist                 what depends on parameters alone runs once a simulation
 //! compilation           all of it, in order: Program::compile
@@ -20,6 +21,7 @@ pub mod errors;
 mod event_code;
 pub(crate) mod events;
 mod exchange;
+mod filter;
 pub(crate) mod hoist;
 pub(crate) mod instruction;
 mod iteration_variables;
@@ -58,6 +60,7 @@ mod upcalls;
 mod validation;
 
 pub use exchange::{Attributes, Needs};
+pub use filter::{Uncertainty, gain, rate};
 pub use linear_part::{InputChain, LinearEntry, LinearPart};
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;

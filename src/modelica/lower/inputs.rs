@@ -6,7 +6,7 @@ use super::errors::INPUT_WITHOUT_DATA;
 use super::recordings::follow;
 use super::used_variables::used_variables;
 use crate::fault;
-use crate::flatten::{FlatModel, Variable};
+use crate::flatten::{FlatModel, Variability, Variable};
 use crate::symbolic::VarId;
 use crate::syntax::ast::CausalityPrefix;
 
@@ -34,7 +34,14 @@ pub(super) fn unbound_inputs(dae: &mut Dae, flat: &FlatModel) {
             continue;
         }
         match flat.recorded.iter().find(|input| *input.name == *dae.variables[position].name) {
-            Some(input) => recorded.push((VarId(position as u32), input)),
+            Some(input) => {
+                let variable = &mut dae.variables[position];
+                if input.is_held && variable.variability == Variability::Discrete {
+                    // `pre` of it is what it was before its sample.
+                    variable.kind = VariableKind::Discrete;
+                }
+                recorded.push((VarId(position as u32), input));
+            }
             None => keep_start(dae, position, is_top_level),
         }
     }

@@ -46,7 +46,11 @@ fn recording(dae: &mut Dae, inputs: &[(VarId, &RecordedInput)]) -> Recording {
         }
         let left = dae.pool.variable(*variable);
         let span = dae.variable(*variable).span;
-        dae.equations.push(Equation::new(left, right, span));
+        let equation = Equation::new(left, right, span);
+        match dae.variable(*variable).kind {
+            VariableKind::Discrete => dae.events.equations.push(equation),
+            _ => dae.equations.push(equation),
+        }
         tracks.push(Track { value, rate, samples: of(&input.values) });
     }
     Recording { knots: of(times), since, tracks }

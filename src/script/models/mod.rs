@@ -11,6 +11,7 @@ pub(crate) mod constant_cache;
 mod continuation;
 pub mod documents;
 pub mod exported;
+pub(crate) mod filter;
 pub mod final_state;
 pub mod hardest;
 pub mod imported;

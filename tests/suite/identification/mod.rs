@@ -11,6 +11,7 @@ mod laboratory;
 mod measured_time;
 mod nist_problems;
 mod operators;
+mod process_noise;
 mod ranks;
 mod report_page;
 mod resume;

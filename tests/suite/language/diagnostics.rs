@@ -27,6 +27,8 @@ const WITHOUT_SCRIPT: &[&str] = &[
     "external-compiler",
     // Scripts grant what external functions want; models without files do not: see `external.rs`.
     "external-outside",
+    // Problems report it, and a world in memory has no package `GAPILib`: see `process_noise.rs`.
+    "no-filter",
     // Scripts meet `bad-parameter-value` first.
     "structural-parameter",
     // A world in memory has no processes for units: see `fmus.rs`.

@@ -7,7 +7,7 @@ use crate::symbolic::Expr;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Carries derivatives through blocks in order; `made` gets the assignments that compute them.
-pub(super) fn through_blocks(
+pub(in super::super) fn through_blocks(
     forward: &mut Forward<'_>,
     blocks: &[Block],
     made: &mut Vec<Assignment>,

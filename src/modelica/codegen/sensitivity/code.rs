@@ -111,8 +111,9 @@ fn refuse(program: &Program, parameters: &[usize]) -> Result<(), String> {
     if !dae.events.transports.is_empty() {
         return Err("the model uses a variable `delay` or `spatialDistribution`".to_owned());
     }
-    if program.events.need_left_limits() {
-        return Err("the model uses `pre` of a variable that is not discrete".to_owned());
+    if let Some(previous) = program.events.previous.iter().find(|previous| previous.computed) {
+        let name = &dae.variable(previous.of).name;
+        return Err(format!("the model uses `pre` of `{name}`, which is not discrete"));
     }
     if program.continuous.unknowns.len() * parameters.len() > LARGEST {
         return Err(format!(

@@ -23,4 +23,5 @@
 mod blocks;
 mod code;
 
+pub(super) use blocks::through_blocks;
 pub use code::SensitivityCode;

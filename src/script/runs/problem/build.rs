@@ -11,7 +11,7 @@ use super::inputs::Undecided;
 use super::misread::{self, Doubts};
 use super::operators::{self, Named};
 use super::segments::Segment;
-use super::{experiment, imported, own_fitness, set_file, spectrum};
+use super::{experiment, imported, noise, own_fitness, set_file, spectrum};
 use crate::Session;
 use crate::diag::{At as _, Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
@@ -116,7 +116,7 @@ fn build_in(
     let file = &*file;
     origins.add_problem(&file.table);
     let data = data_of(session, file, folder, (&mut notes, &mut origins))?;
-    let free = free_parameters(file, &data).map_err(alone)?;
+    let mut free = free_parameters(file, &data).map_err(alone)?;
     if free.is_empty() {
         let fault = fault!(BAD_OPTION, "no parameter is estimated");
         let place = file.places.at(&["parameters"]);
@@ -124,6 +124,7 @@ fn build_in(
     }
     let model = (file, unit.as_ref());
     let mut read = experiments(session, model, &data, &free, &mut notes)?;
+    noise::set_ranges(file, (&read.fitted, &read.series), &mut free).map_err(alone)?;
     if file.fitness.is_none() {
         decide(&mut read.series);
     }
@@ -259,6 +260,9 @@ fn experiments(
         let rows = segment.rows.clone().map(|rows| own.table.rows(rows, own.count));
         let table = rows.as_ref().unwrap_or(&own.table);
         let source = experiment::Source { file, entry, label, segment, number, table, free };
+        if !file.noise.is_empty() && (unit.is_some() || entry.spectrum.is_some()) {
+            return Err(vec![no_noise(unit.is_some()).at(file.places.at(&["noise"]))]);
+        }
         let built = match (unit, &entry.spectrum) {
             (Some(unit), None) => imported::build(&source, (session, unit), notes)?,
             (None, None) => source.build(session, notes)?,
@@ -291,6 +295,12 @@ fn experiments(
             .help("add a table `[[experiment]]`")));
     }
     Ok(all)
+}
+
+fn no_noise(is_unit: bool) -> Fault {
+    let what = if is_unit { "FMUs" } else { "spectra" };
+    fault!(BAD_OPTION, "process noise of {what} is not supported")
+        .help("fit the Modelica model to measurements over time")
 }
 
 fn no_spectrum() -> Fault {
@@ -490,6 +500,7 @@ fn free_parameters(
             }
         }
     }
+    free.extend(noise::free(file)?);
     Ok(free)
 }
 

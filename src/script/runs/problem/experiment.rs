@@ -7,7 +7,9 @@ use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile};
 use super::inputs::{self, Times, Undecided};
 use super::segments::{Rows, Segment, segments};
 use super::series::Comparison;
-use super::{deviation, dynamics, enclosing_class, frequency_axis, parameters, time_axis};
+use super::{
+    deviation, dynamics, enclosing_class, filtering, frequency_axis, parameters, time_axis,
+};
 use crate::Session;
 use crate::codegen::Program;
 use crate::diag::{At as _, Diagnostic, Fault};
@@ -184,8 +186,13 @@ impl Source<'_> {
             stop: has_states.then_some(class_stop),
             parameters: class.parameters,
         };
-        let (experiment, series) =
-            self.compare(session, subject, (&abscissa, &class.observed), notes)?;
+        let compared = self.compare(session, subject, (&abscissa, &class.observed), notes)?;
+        let (experiment, series, program) = match self.file.noise.is_empty() {
+            true => (compared.0, compared.1, program),
+            false => {
+                filtering::filtered(session, (self.file, self.entry), &class.name, compared, notes)?
+            }
+        };
         let error = if has_states { error_of(&program, &experiment.settings) } else { 0.0 };
         let undecided = class.undecided;
         Ok(Built { experiment, series, error, program: Some(program), undecided })

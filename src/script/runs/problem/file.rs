@@ -23,6 +23,9 @@ pub(super) struct ProblemFile {
     #[serde(default)]
     pub files: Vec<PathBuf>,
     pub parameters: IndexMap<String, ParameterEntry>,
+    /// Process noise of states.
+    #[serde(default)]
+    pub noise: IndexMap<String, NoiseEntry>,
     pub experiment: Vec<ExperimentEntry>,
     pub fitness: Option<OneOrMany>,
     #[serde(default)]
@@ -229,6 +232,26 @@ pub(super) enum DelayEntry {
 pub(super) enum SigmaEntry {
     Number(f64),
     Words(String),
+}
+
+/// Process noise of a state: a number, `estimate`, or a table.
+#[derive(Debug, Clone)]
+pub(super) enum NoiseEntry {
+    Number(f64),
+    Words(String),
+    More(NoiseTable),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NoiseTable {
+    /// The root of its spectral density, a number or `estimate`.
+    pub value: Option<SigmaEntry>,
+    pub min: Option<f64>,
+    pub max: Option<f64>,
+    pub start: Option<f64>,
+    /// The standard deviation of the initial value.
+    pub initial: Option<f64>,
 }
 
 #[derive(Debug, Clone)]

@@ -2,9 +2,9 @@
 //! is written in none of them, the message says what was expected.
 
 use super::file::{
-    BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, OneOrMany, OperatorEntry,
-    ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry, SetEntry, SigmaEntry,
-    ValueEntry, WeightEntry,
+    BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, NoiseEntry, NoiseTable, OneOrMany,
+    OperatorEntry, ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry,
+    SetEntry, SigmaEntry, ValueEntry, WeightEntry,
 };
 use indexmap::IndexMap;
 use serde::de::value::MapAccessDeserializer;
@@ -170,6 +170,16 @@ in_forms!(
         number: Some(SigmaEntry::Number),
         text: Some(SigmaEntry::Words),
         ..Forms::new("a number, the name of a column, a formula, or \"estimate\"")
+    }
+);
+
+in_forms!(
+    NoiseEntry,
+    Forms::<_, NoiseTable> {
+        number: Some(NoiseEntry::Number),
+        text: Some(NoiseEntry::Words),
+        table: Some(NoiseEntry::More),
+        ..Forms::new("a number, \"estimate\", or a range, `{ min = 1e-4, max = 1e-1 }`")
     }
 );
 

@@ -6,7 +6,7 @@ use super::enclosing_class::{self, EnclosingClass, QuotedNames, References, own_
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
 use super::flat::attribute;
 use super::segments::Segment;
-use super::{deviation, dynamics};
+use super::{deviation, dynamics, noise};
 use crate::Session;
 use crate::codegen::{Access, Program};
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
@@ -79,6 +79,7 @@ impl Setting<'_> {
                 false => enclosing.bind(name, value, place),
             }
         }
+        names.extend(noise::declare((self.file, self.entry), self.free, enclosing)?);
         self.values(enclosing)?;
         Ok(names)
     }

@@ -32,6 +32,7 @@ pub(super) fn table(record: &RecordValue) -> Result<Table, Fault> {
         }
     }
     put(&mut file, "parameters", parameters);
+    put(&mut file, "noise", noise(&fields)?);
     let experiments = fields.records("experiments")?;
     let experiments: Result<Vec<Entry>, Fault> =
         experiments.iter().map(|entry| Ok(Entry::Table(experiment(&Fields(entry))?))).collect();
@@ -45,6 +46,29 @@ pub(super) fn table(record: &RecordValue) -> Result<Table, Fault> {
     put(&mut file, "method", method);
     put(&mut file, "stop", stop(&fields)?);
     Ok(file)
+}
+
+/// Process noise; what is 0 is estimated.
+fn noise(fields: &Fields<'_>) -> Result<Table, Fault> {
+    let states: Vec<String> = fields.get("noiseStates")?;
+    let of_states = |name: &str| -> Result<Vec<f64>, Fault> {
+        let values: Vec<f64> = fields.get(name)?;
+        match values.is_empty() {
+            true => Ok(vec![0.0; states.len()]),
+            false => same_size("noiseStates", states.len(), name, values.len()).map(|()| values),
+        }
+    };
+    let (values, initial) = (of_states("noiseValues")?, of_states("noiseInitial")?);
+    let one = |(state, (value, initial)): (String, (f64, f64))| {
+        let mut entry = Table::new();
+        match value == 0.0 {
+            true => put(&mut entry, "value", "estimate"),
+            false => put(&mut entry, "value", value),
+        }
+        put(&mut entry, "initial", initial);
+        (state, Entry::Table(entry))
+    };
+    Ok(states.clone().into_iter().zip(values.into_iter().zip(initial)).map(one).collect())
 }
 
 fn stop(fields: &Fields<'_>) -> Result<Table, Fault> {

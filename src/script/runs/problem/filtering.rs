@@ -1,0 +1,114 @@
+//! Experiments of problems with process noise: the model is filtered, so that each measurement is
+//! compared with its prediction from all earlier ones.
+
+use super::data::Notes;
+use super::enclosing_class::own_name;
+use super::file::{ColumnEntry, ExperimentEntry, ProblemFile};
+use super::noise::{deviation, of_states};
+use crate::Session;
+use crate::codegen::Program;
+use crate::diag::{At as _, Diagnostic, Fault};
+use crate::fault;
+use crate::identify::CompiledModel;
+use crate::identify::problem::{Experiment, Observation, Series, Sigma};
+use crate::models::filter::{self, Measured, MeasuredSigma};
+use crate::registry::BAD_OPTION;
+use std::sync::Arc;
+
+/// The experiment with the filtered model of this class in place of its model: its points are
+/// predictions.
+///
+/// # Errors
+///
+/// What a filter cannot do with the model, the data or the settings.
+pub(super) fn filtered(
+    session: &mut Session,
+    (file, entry): (&ProblemFile, &ExperimentEntry),
+    class: &str,
+    (mut experiment, mut series): (Experiment, Vec<Series>),
+    notes: &mut Notes,
+) -> Result<(Experiment, Vec<Series>, Arc<Program>), Vec<Diagnostic>> {
+    let one = |error: Diagnostic| vec![error];
+    // Deviations that the model computes belong to its outputs.
+    series.retain(Series::is_data);
+    experiment.observations.truncate(series.len());
+    for (own, (name, column)) in series.iter().zip(entry.all_outputs()) {
+        check(own, name, &column).at(entry.places.at(&["outputs", name])).map_err(one)?;
+    }
+    let noise = of_states(file, (&experiment, &series)).map_err(one)?;
+    let outputs = entry.all_outputs().zip(&series).zip(&experiment.observations);
+    let measured: Vec<Measured> = outputs
+        .map(|((output, own), observation)| Measured {
+            name: observation.y_name.clone(),
+            times: own.x.clone(),
+            values: own.y.clone(),
+            sigma: sigma(output, own),
+        })
+        .collect();
+    let start = experiment.settings.start;
+    let place = file.places.at(&["noise"]);
+    let found = filter::filtered(session, class, (&noise, &measured), start, place)?;
+    let program = found.translated.program.clone();
+    experiment.model = Arc::new(CompiledModel::new(&file.model, program.clone()));
+    experiment.deviations = found.outputs.len();
+    for (k, [prediction, deviation]) in found.outputs.into_iter().enumerate() {
+        experiment.observations[k].y_name = prediction;
+        series[k].sigma = Sigma::Variable(deviation.clone());
+        let x = series[k].x.clone();
+        experiment.observations.push(Observation { y_name: deviation.clone(), x });
+        series.push(series[k].deviations(&deviation, series.len() - k));
+    }
+    for (name, column) in entry.all_outputs().filter(|(_, column)| column.sigma.is_none()) {
+        let name = column.column.as_ref().unwrap_or(name);
+        let experiment = &experiment.name;
+        notes.add(format!("{experiment}: `{name}` has no `sigma`; it is estimated"));
+    }
+    Ok((experiment, series, program))
+}
+
+/// The standard deviation of the measurements of an output.
+fn sigma((name, column): (&String, ColumnEntry), own: &Series) -> MeasuredSigma {
+    match (&own.sigma, deviation(name, &column)) {
+        (Sigma::Given(values), _) => match values.split_first() {
+            Some((first, rest)) if rest.iter().all(|value| value == first) => {
+                MeasuredSigma::Expression(format!("{first:e}"))
+            }
+            _ => MeasuredSigma::Samples(values.clone()),
+        },
+        (Sigma::Variable(name), _) => MeasuredSigma::Expression(name.clone()),
+        (_, Some(name)) => MeasuredSigma::Expression(own_name("the", &name)),
+        (_, None) => MeasuredSigma::Expression("1.0".to_owned()),
+    }
+}
+
+/// Refuses what a filter cannot take.
+fn check(own: &Series, name: &str, column: &ColumnEntry) -> Result<(), Fault> {
+    if own.x_name != "time" {
+        return Err(fault!(BAD_OPTION, "process noise acts over time, but X is `{}`", own.x_name)
+            .help("remove `[noise]`, or use `time` as X"));
+    }
+    if let Some(pair) = own.x.windows(2).find(|pair| pair[1] <= pair[0]) {
+        return Err(fault!(
+            BAD_OPTION,
+            "`{name}` has two values at {} s, of which a filter takes one",
+            pair[1]
+        )
+        .help("keep one row of each time"));
+    }
+    if own.weight != 1.0 || column.error.is_some() {
+        let what = if own.weight == 1.0 { "another `error`" } else { "a `weight`" };
+        return Err(fault!(
+            BAD_OPTION,
+            "`{name}` has {what}, which has no meaning with process noise"
+        )
+        .help("remove it; `sigma` says how large the errors are"));
+    }
+    if matches!(own.sigma, Sigma::Formula(_)) {
+        return Err(fault!(
+            BAD_OPTION,
+            "the `sigma` of `{name}` is a formula of the output, which a filter does not have"
+        )
+        .help("write a number, the name of a column, or \"estimate\""));
+    }
+    Ok(())
+}

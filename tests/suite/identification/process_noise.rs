@@ -1,0 +1,215 @@
+//! Process noise: fits whose predictions come from a Kalman filter, against the same likelihoods
+//! maximized by SciPy.
+
+use crate::support::program::{folder, gapi};
+use serde_json::Value;
+use std::fmt::Write as _;
+
+/// The result of a problem, and everything that was printed.
+fn solved(files: &[(&str, &str)]) -> (Value, String) {
+    let folder = folder(files);
+    let (code, out, error) = gapi(&folder, &["identify", "p.toml", "--out", "o", "--plain"]);
+    assert_eq!(code, 0, "{out}{error}");
+    let text = std::fs::read_to_string(folder.path().join("o/result.json")).unwrap();
+    (serde_json::from_str(&text).unwrap(), out + &error)
+}
+
+fn refused(files: &[(&str, &str)]) -> String {
+    let (code, out, error) = gapi(&folder(files), &["identify", "p.toml", "--out", "o", "--plain"]);
+    assert_ne!(code, 0, "{out}");
+    error
+}
+
+/// Value and standard error of a parameter.
+fn parameter(result: &Value, name: &str) -> [f64; 2] {
+    let all = result["parameters"].as_array().unwrap();
+    let found = all.iter().find(|own| own["name"] == name).unwrap_or_else(|| panic!("{name}"));
+    ["value", "deviation"].map(|key| found[key].as_f64().unwrap_or(f64::NAN))
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
+}
+
+/// A room whose losses vary: C dT/dt = u − T/R + w, dw/dt = −w/4 with noise.
+const ROOM: &str = "model Room
+  parameter Real C = 4, R = 2;
+  input Real u;
+  Real T(start = 1, fixed = true);
+  Real w(start = 0, fixed = true);
+equation
+  C*der(T) = u - T/R + w;
+  der(w) = -w/4;
+end Room;
+";
+
+/// Drawn with C = 5, R = 2, noise of w 0.8, sigma 0.1, and u = 1 and 0 for 10 s each.
+const TEMPERATURES: &str = "1.035 1.032 1.365 1.751 1.915 2.26 2.232 2.316 2.185 2.443 2.643 2.33 \
+    1.801 1.564 1.153 0.702 0.369 -0.007 0.108 -0.112 -0.277 -0.363 -0.196 -0.086 -0.05 0.349 0.463 \
+    0.532 0.561 0.394 0.48 0.276 0.308 0.259 -0.003 -0.019 0.105 -0.203 -0.378 -0.392 -0.448 -0.568 \
+    -0.729 -0.504 -0.396 -0.278 -0.059 0.059 -0.127 -0.194 -0.155 -0.584 -0.904 -0.872 -1.036 -0.92 \
+    -0.821 -0.499 -0.501 -0.243 0.118 0.804 0.804 1.145 1.282 0.924 1.082 1.173 0.878 1.118 0.834 \
+    0.35 0.039 -0.239 -0.556 -0.735 -1.044 -1.119 -1.292 -1.475";
+
+fn room_data() -> String {
+    let mut text = "time [s],T,u\n".to_owned();
+    for (k, temperature) in TEMPERATURES.split_whitespace().enumerate() {
+        let u = 1 - (k / 10) % 2;
+        writeln!(text, "{k},{temperature},{u}").unwrap();
+    }
+    text
+}
+
+fn room_problem(noise: &str, sigma: &str) -> String {
+    format!(
+        "model = \"Room\"\nfiles = [\"M.mo\"]\n[parameters]\nC = {{ min = 1, max = 20 }}\n\
+         R = {{ min = 0.2, max = 20 }}\n[noise]\nw = {noise}\n[[experiment]]\ndata = \"d.csv\"\n\
+         outputs = {{ T = {{ column = \"T\"{sigma} }} }}\n\
+         inputs = {{ u = {{ column = \"u\", interpolation = \"hold\" }} }}\n\
+         [method]\nname = \"levenberg_marquardt\"\n"
+    )
+}
+
+fn room(noise: &str, sigma: &str) -> (Value, String) {
+    let (data, problem) = (room_data(), room_problem(noise, sigma));
+    solved(&[("M.mo", ROOM), ("d.csv", &data), ("p.toml", &problem)])
+}
+
+/// By SciPy: a discrete Kalman filter with matrix exponentials, its likelihood maximized by
+/// Nelder-Mead to 1e-12; standard errors from the information Σ ŷ'ŷ'ᵀ/s² + 2 s's'ᵀ/s² of all innovations.
+#[test]
+fn noise_and_errors_of_measurement_are_estimated_together() {
+    let (result, text) = room("{ min = 0.05, max = 5 }", ", sigma = \"estimate\"");
+    let expected = [
+        ("C", 4.159339014, 1.12220912),
+        ("R", 1.525816715, 0.51296792),
+        ("noise of w", 0.638691362, 0.17395926),
+        ("sigma of T", 0.0928684705, 0.0115921),
+    ];
+    for (name, value, error) in expected {
+        let [found, deviation] = parameter(&result, name);
+        assert_near(found, value, 1e-5);
+        assert_near(deviation, error, 1e-4);
+    }
+    let log = result["negative_log_likelihood"].as_f64().unwrap();
+    assert!((log + 20.528069195977533).abs() < 1e-8, "{log}\n{text}");
+    assert!(text.contains("1/sqrt(s)"), "{text}");
+}
+
+/// What the data say where nothing else does.
+#[test]
+fn sigmas_and_ranges_that_are_not_given_are_found() {
+    let problem = room_problem("1", "").replace("w = 1", "T = \"estimate\"\nw = \"estimate\"");
+    let (result, text) = solved(&[("M.mo", ROOM), ("d.csv", &room_data()), ("p.toml", &problem)]);
+    assert!(text.contains("`T` has no `sigma`; it is estimated"), "{text}");
+    assert_near(parameter(&result, "sigma of T")[0], 0.0928684705, 0.05);
+    assert_near(parameter(&result, "noise of w")[0], 0.638691362, 0.05);
+}
+
+/// Two tanks whose outflows are roots of their levels, noise on both; the second level is measured.
+/// By SciPy: mean and covariance of an extended Kalman filter integrated by DOP853 with 1e-10, Nelder-Mead.
+#[test]
+fn nonlinear_models_have_an_extended_filter() {
+    let tanks = "model Tanks
+  parameter Real k1 = 0.5, k2 = 0.5;
+  input Real u;
+  Real x(start = 1, fixed = true), y(start = 1.5, fixed = true);
+equation
+  der(x) = u - k1*sqrt(x);
+  der(y) = k1*sqrt(x) - k2*sqrt(y);
+end Tanks;
+";
+    let levels = "1.5 1.5408 1.5622 1.6763 1.766 1.8881 1.986 2.1702 2.2989 2.3456 2.4297 2.4727 \
+        2.5133 2.5345 2.4963 2.5128 2.4172 2.3595 2.3916 2.3819 2.4666 2.4931 2.5563 2.6243 2.7521 \
+        2.8185 2.8953 2.9561 2.9676 2.9148 2.8858 2.8207 2.7725 2.737 2.7267 2.7687 2.7687 2.8279 \
+        2.9259 3.0391";
+    let mut data = "time [s],y,u\n".to_owned();
+    for (k, level) in levels.split_whitespace().enumerate() {
+        let u = if (k / 8) % 2 == 0 { 0.5 } else { 0.2 };
+        writeln!(data, "{k},{level},{u}").unwrap();
+    }
+    let problem = "model = \"Tanks\"
+files = [\"M.mo\"]
+[parameters]
+k1 = { min = 0.05, max = 2 }
+k2 = { min = 0.05, max = 2 }
+[noise]
+x = { min = 1e-3, max = 1 }
+y = 0.02
+[[experiment]]
+data = \"d.csv\"
+tolerance = 1e-9
+outputs = { y = { column = \"y\", sigma = 0.02 } }
+inputs = { u = { column = \"u\", interpolation = \"hold\" } }
+[method]
+name = \"levenberg_marquardt\"
+";
+    let (result, text) = solved(&[("M.mo", tanks), ("d.csv", &data), ("p.toml", problem)]);
+    for (name, value) in [("k1", 0.29526082), ("k2", 0.20001619), ("noise of x", 0.04130659)] {
+        assert_near(parameter(&result, name)[0], value, 1e-4);
+    }
+    let log = result["negative_log_likelihood"].as_f64().unwrap();
+    assert!((log + 81.19369380328847).abs() < 1e-6, "{log}\n{text}");
+}
+
+#[test]
+fn what_a_filter_cannot_do_is_refused_with_its_place() {
+    let data = room_data();
+    let with = |change: &dyn Fn(String) -> String| {
+        let problem = change(room_problem("0.1", ", sigma = 0.1"));
+        refused(&[("M.mo", ROOM), ("d.csv", &data), ("p.toml", &problem)])
+    };
+    let cases: [(&str, &str, &str); 6] = [
+        ("w = 0.1", "u = 0.1", "`u` is not a state"),
+        ("w = 0.1", "w = -1", "the noise of `w` is -1"),
+        ("w = 0.1", "w = { min = 1 }", "must have either `min` and `max`, or `value`"),
+        ("sigma = 0.1", "sigma = \"0.1 + abs(T)\", weight = 2", "a `weight`"),
+        ("sigma = 0.1", "sigma = 0.1, error = \"lognormal\"", "another `error`"),
+        ("sigma = 0.1", "sigma = 0.1, delay = 1", "keep a past that is uncertain"),
+    ];
+    for (from, to, expected) in cases {
+        let error = with(&|problem| problem.replace(from, to));
+        assert!(error.contains(expected), "{to}: {error}");
+        assert!(error.contains("p.toml:"), "{to}: {error}");
+    }
+}
+
+#[test]
+fn states_that_events_set_and_samples_that_are_kept_are_refused() {
+    let ball = "model Ball
+  parameter Real e = 0.8;
+  Real h(start = 1, fixed = true), v(start = 0, fixed = true);
+equation
+  der(h) = v;
+  der(v) = -9.81;
+  when h < 0 then
+    reinit(v, -e*pre(v));
+  end when;
+end Ball;
+";
+    let sampled = "model Ball
+  parameter Real e = 0.8;
+  Real h(start = 1, fixed = true), v(start = 0, fixed = true);
+  discrete Real u;
+equation
+  der(h) = v;
+  der(v) = -e*u;
+  when sample(0, 0.1) then
+    u = h;
+  end when;
+end Ball;
+";
+    let problem = "model = \"Ball\"\nfiles = [\"M.mo\"]\n[parameters]\ne = { min = 0.1, max = 1 }\n\
+                   [noise]\nv = 0.1\n[[experiment]]\ndata = \"d.csv\"\n\
+                   outputs = { h = { column = \"h\", sigma = 0.1 } }\n";
+    let data = "time [s],h\n0,1\n0.1,0.95\n0.2,0.8\n";
+    for (model, expected) in
+        [(ball, "`reinit` sets `v`"), (sampled, "`u` keeps a value of uncertain states")]
+    {
+        let error = refused(&[("M.mo", model), ("d.csv", data), ("p.toml", problem)]);
+        assert!(error.contains("error[no-filter]"), "{error}");
+        assert!(error.contains(expected), "{error}");
+        assert!(error.contains("p.toml:"), "{error}");
+    }
+}
