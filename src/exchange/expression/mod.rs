@@ -156,6 +156,26 @@ impl Expression {
         }
     }
 
+    /// How many parts it has with expressions in place of names.
+    pub(crate) fn size_with(&self, values: &BTreeMap<String, Expression>) -> usize {
+        let sizes = values.iter().map(|(name, value)| (name.as_str(), value.size()));
+        let sizes: BTreeMap<&str, usize> = sizes.collect();
+        self.size_of(&|name| sizes.get(name).copied())
+    }
+
+    /// How many parts it has.
+    pub(crate) fn size(&self) -> usize {
+        self.size_of(&|_| None)
+    }
+
+    fn size_of(&self, of_name: &dyn Fn(&str) -> Option<usize>) -> usize {
+        if let Expression::Name(name) = self {
+            return of_name(name).unwrap_or(1);
+        }
+        let parts = self.parts().into_iter().map(|part| part.size_of(of_name));
+        parts.fold(1, usize::saturating_add)
+    }
+
     /// With expressions in place of names.
     pub(crate) fn substituted(&self, values: &BTreeMap<String, Expression>) -> Expression {
         self.replaced(&|part| match part {

@@ -13,10 +13,8 @@ mod table;
 pub use problem::ReadFile;
 
 use crate::Refusal;
-use crate::diag::Fault;
 use crate::expression::{Context, Expression, number, printed};
 use crate::names::{Names, identifier};
-use crate::registry::BAD_OPTION;
 use crate::sbml::{self, Additions, Extended};
 use experiments::{Experiment, Measured, Noise, Output, Reader, Sigma};
 use indexmap::IndexMap;
@@ -50,11 +48,7 @@ struct Problem {
 /// What is wrong in a file, or not supported, at its place.
 pub fn import(name: &str, yaml: &str, read: ReadFile<'_>) -> Result<Imported, Refusal> {
     let tables = problem::read(yaml, read)?;
-    let text = read(&tables.model).map_err(|error| {
-        let message = format!("cannot read `{}`: {error}", tables.model);
-        Refusal::new(0..0, Fault::new(BAD_OPTION, message))
-    })?;
-    let model = tables.model.clone();
+    let (model, text) = tables.model.clone();
     let mut problem = Problem::of(name, tables)?;
     let mentioned = sbml::mentioned(&text).map_err(|refusal| refusal.in_file(&model))?;
     problem.decide_noise(&mentioned)?;

@@ -5,12 +5,12 @@ use crate::Refusal;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
 use indexmap::IndexMap;
-use saphyr::{LoadableYamlNode as _, Yaml};
+use saphyr::{LoadableYamlNode as _, MarkedYaml};
 
 /// The tables of a problem.
 pub(super) struct Tables {
-    /// The name of the file of the model.
-    pub(super) model: String,
+    /// The name and the text of the file of the model.
+    pub(super) model: (String, String),
     pub(super) parameters: Vec<Row>,
     pub(super) conditions: IndexMap<String, Row>,
     pub(super) observables: Vec<Row>,
@@ -20,17 +20,40 @@ pub(super) struct Tables {
 /// Gives the text of a file beside the YAML file.
 pub type ReadFile<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
 
-fn wrong(message: impl Into<String>) -> Refusal {
-    Refusal::new(0..0, Fault::new(BAD_OPTION, message))
+/// The YAML file, for faults at the places of its entries.
+struct File<'a> {
+    text: &'a str,
 }
 
-/// The names of files in an entry: one, or a list.
-fn names(entry: &Yaml<'_>, key: &str) -> Vec<String> {
-    let own = entry.as_mapping_get(key);
-    let one = own.and_then(Yaml::as_str).map(str::to_owned);
-    let list = own.and_then(Yaml::as_sequence);
-    let list = list.into_iter().flatten().filter_map(|name| name.as_str().map(str::to_owned));
-    one.into_iter().chain(list).collect()
+impl File<'_> {
+    /// A fault at an entry, or in the file where there is none.
+    fn wrong(&self, entry: Option<&MarkedYaml<'_>>, message: impl Into<String>) -> Refusal {
+        let place = entry.map_or(0..0, |own| {
+            let start = self.offset(own.span.start.index());
+            let end = self.offset(own.span.end.index()).max(start);
+            let line = self.text[start..end].lines().next().unwrap_or_default();
+            start..start + line.trim_end().len()
+        });
+        Refusal::new(place, Fault::new(BAD_OPTION, message))
+    }
+
+    /// Where the character of this number begins.
+    fn offset(&self, character: usize) -> usize {
+        let mut starts = self.text.char_indices().map(|(at, _)| at);
+        starts.nth(character).unwrap_or(self.text.len())
+    }
+}
+
+/// An entry of a mapping.
+fn entry<'a, 'i>(own: &'a MarkedYaml<'i>, key: &str) -> Option<&'a MarkedYaml<'i>> {
+    own.data.as_mapping_get(key)
+}
+
+/// The names of files in an entry, one or a list, with their places.
+fn names<'a, 'i>(own: &'a MarkedYaml<'i>, key: &str) -> Vec<(&'a str, &'a MarkedYaml<'i>)> {
+    let Some(own) = entry(own, key) else { return Vec::new() };
+    let list = own.data.as_sequence().map_or(std::slice::from_ref(own), Vec::as_slice);
+    list.iter().filter_map(|one| Some((one.data.as_str()?, one))).collect()
 }
 
 /// The tables that the YAML file names.
@@ -38,32 +61,37 @@ fn names(entry: &Yaml<'_>, key: &str) -> Vec<String> {
 /// # Errors
 ///
 /// What is wrong with it or with a table; other versions, several models.
-pub(super) fn read(yaml: &str, file: ReadFile<'_>) -> Result<Tables, Refusal> {
-    let documents = Yaml::load_from_str(yaml)
-        .map_err(|error| wrong(format!("the file is not YAML: {error}")))?;
-    let document = documents.first().ok_or_else(|| wrong("the file is empty"))?;
-    version(document)?;
-    let problems = document.as_mapping_get("problems").and_then(Yaml::as_sequence);
-    let problem = match problems.map(Vec::as_slice) {
-        Some([one]) => one,
-        Some(several) => {
-            return Err(wrong(format!("{} problems in one file are not supported", several.len())));
-        }
-        None => return Err(wrong("the entry `problems` is missing: is it a file of PEtab?")),
-    };
+pub(super) fn read(yaml: &str, read: ReadFile<'_>) -> Result<Tables, Refusal> {
+    let file = File { text: yaml };
+    let documents = MarkedYaml::load_from_str(yaml).map_err(|error| {
+        let start = file.offset(error.marker().index());
+        let fault = Fault::new(BAD_OPTION, format!("the file is not YAML: {}", error.info()));
+        Refusal::new(start..start, fault)
+    })?;
+    let document = documents.first().ok_or_else(|| file.wrong(None, "the file is empty"))?;
+    version(&file, document)?;
+    let problem = problem(&file, document)?;
     let models = names(problem, "sbml_files");
-    let [model] = models.as_slice() else {
-        return Err(wrong(format!("the problem has {} models; one is supported", models.len())));
+    let [(model, place)] = models[..] else {
+        let entry = entry(problem, "sbml_files").or(Some(problem));
+        let message = format!("the problem has {} models; one is supported", models.len());
+        return Err(file.wrong(entry, message));
     };
-    let mut all = |entry: &Yaml<'_>, key: &str, required: &[&str]| {
+    let cannot = |name: &str, place: &MarkedYaml<'_>, error: String| {
+        file.wrong(Some(place), format!("cannot read `{name}`: {error}"))
+    };
+    let text = read(model).map_err(|error| cannot(model, place, error))?;
+    let mut all = |own: &MarkedYaml<'_>, key: &str, required: &[&str]| {
         let mut all = Vec::new();
-        for name in names(entry, key) {
-            let text =
-                file(&name).map_err(|error| wrong(format!("cannot read `{name}`: {error}")))?;
-            all.extend(rows(&name, &text, required)?);
+        for (name, place) in names(own, key) {
+            let text = read(name).map_err(|error| cannot(name, place, error))?;
+            all.extend(rows(name, &text, required)?);
         }
         match all.is_empty() {
-            true => Err(wrong(format!("`{key}` names no table with rows"))),
+            true => {
+                let entry = entry(own, key).or(Some(own));
+                Err(file.wrong(entry, format!("`{key}` names no table with rows")))
+            }
             false => Ok(all),
         }
     };
@@ -81,25 +109,45 @@ pub(super) fn read(yaml: &str, file: ReadFile<'_>) -> Result<Tables, Refusal> {
         }
         conditions.insert(name, row);
     }
-    Ok(Tables { model: model.clone(), parameters, conditions, observables, measurements })
+    let model = (model.to_owned(), text);
+    Ok(Tables { model, parameters, conditions, observables, measurements })
+}
+
+/// The problem of the file.
+fn problem<'a, 'i>(
+    file: &File<'_>,
+    document: &'a MarkedYaml<'i>,
+) -> Result<&'a MarkedYaml<'i>, Refusal> {
+    let problems = entry(document, "problems");
+    match problems.and_then(|own| own.data.as_sequence()).map(Vec::as_slice) {
+        Some([one]) => Ok(one),
+        Some(several) => {
+            let message = format!("{} problems in one file are not supported", several.len());
+            Err(file.wrong(problems, message))
+        }
+        None => {
+            let message = "the entry `problems` is missing: is it a file of PEtab?";
+            Err(file.wrong(Some(document), message))
+        }
+    }
 }
 
 /// Refuses other versions than 1.
-fn version(document: &Yaml<'_>) -> Result<(), Refusal> {
-    let version = document.as_mapping_get("format_version");
-    let text = match version {
-        Some(version) if version.as_integer().is_some() => {
-            version.as_integer().map(|v| v.to_string())
-        }
-        Some(version) if version.as_floating_point().is_some() => {
-            version.as_floating_point().map(|v| v.to_string())
-        }
-        Some(version) => version.as_str().map(str::to_owned),
-        None => None,
-    };
+fn version(file: &File<'_>, document: &MarkedYaml<'_>) -> Result<(), Refusal> {
+    let version = entry(document, "format_version");
+    let text = version.and_then(|own| {
+        let integer = own.data.as_integer().map(|number| number.to_string());
+        let number = || own.data.as_floating_point().map(|number| number.to_string());
+        integer.or_else(number).or_else(|| own.data.as_str().map(str::to_owned))
+    });
     match text.as_deref().map(|text| text.split('.').next().unwrap_or_default()) {
         Some("1") => Ok(()),
-        Some(other) => Err(wrong(format!("version {other} of PEtab is not supported"))),
-        None => Err(wrong("the entry `format_version` is missing: is it a file of PEtab?")),
+        Some(other) => {
+            Err(file.wrong(version, format!("version {other} of PEtab is not supported")))
+        }
+        None => {
+            let message = "the entry `format_version` is missing: is it a file of PEtab?";
+            Err(file.wrong(Some(document), message))
+        }
     }
 }

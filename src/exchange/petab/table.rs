@@ -20,10 +20,10 @@ pub(super) struct Row {
 ///
 /// # Errors
 ///
-/// Required columns that are missing.
+/// Required columns that are missing, columns of one name, and cells without a column.
 pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>, Refusal> {
     let name: Rc<str> = file.into();
-    let mut columns: Option<Rc<BTreeMap<String, usize>>> = None;
+    let mut heading: Option<(Rc<BTreeMap<String, usize>>, usize)> = None;
     let (mut rows, mut start) = (Vec::new(), 0);
     for line in text.split_inclusive('\n') {
         let place = start..start + line.trim_end().len();
@@ -34,20 +34,37 @@ pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>
             continue;
         }
         let cells: Vec<String> = line.split('\t').map(cell).collect();
-        let Some(columns) = &columns else {
+        let Some((columns, width)) = &heading else {
+            if let Some(twice) = repeated(&cells) {
+                let fault = Fault::new(BAD_OPTION, format!("there are two columns `{twice}`"));
+                return Err(Refusal::new(place, fault).in_file(file));
+            }
             if let Some(missing) =
                 required.iter().find(|name| !cells.iter().any(|own| own == *name))
             {
                 let fault = Fault::new(BAD_OPTION, format!("there is no column `{missing}`"));
                 return Err(Refusal::new(place, fault).in_file(file));
             }
-            columns =
-                Some(Rc::new(cells.into_iter().enumerate().map(|(k, name)| (name, k)).collect()));
+            let width = cells.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1);
+            let columns = cells.into_iter().take(width).enumerate().map(|(k, name)| (name, k));
+            heading = Some((Rc::new(columns.collect()), width));
             continue;
         };
-        rows.push(Row { file: name.clone(), place, columns: columns.clone(), cells });
+        let row = Row { file: name.clone(), place, columns: columns.clone(), cells };
+        if let Some(extra) = row.cells.iter().skip(*width).find(|cell| !cell.is_empty()) {
+            return Err(row.wrong(format!(
+                "the cell `{extra}` has no column: the heading has {width} of them"
+            )));
+        }
+        rows.push(row);
     }
     Ok(rows)
+}
+
+/// A name that several columns have.
+fn repeated(names: &[String]) -> Option<&String> {
+    let mut named = names.iter().enumerate().filter(|(_, name)| !name.is_empty());
+    named.find(|(at, name)| names[..*at].contains(name)).map(|(_, name)| name)
 }
 
 /// The content of a cell, which may be in quotation marks.

@@ -24,6 +24,9 @@ pub(super) struct Quantity {
     pub(super) constant: bool,
     pub(super) kind: Kind,
     pub(super) value: Option<f64>,
+    /// What the document says about it.
+    pub(super) notes: String,
+    pub(super) place: Place,
 }
 
 #[derive(Debug, Clone)]
@@ -51,6 +54,8 @@ pub(super) struct Reaction {
     pub(super) id: String,
     pub(super) title: String,
     pub(super) rate: Option<Expression>,
+    pub(super) notes: String,
+    pub(super) place: Place,
     /// Species with their stoichiometries; those of reactants are subtracted.
     pub(super) products: Vec<(String, Expression)>,
     pub(super) reactants: Vec<(String, Expression)>,
@@ -109,6 +114,33 @@ impl Document {
         for math in of_rules.chain(of_reactions).chain(of_events) {
             *math = math.replaced(change);
         }
+    }
+
+    /// The names that each part mentions, with its place.
+    pub(super) fn mentions(&self) -> impl Iterator<Item = (BTreeSet<String>, Place)> {
+        let all = [&self.assignments, &self.rates, &self.algebraic, &self.initial];
+        let rules = all.into_iter().flatten().map(|rule| {
+            let variable = Some(rule.variable.clone()).filter(|own| !own.is_empty());
+            (rule.math.names().into_iter().chain(variable).collect(), rule.place.clone())
+        });
+        let reactions = self.reactions.iter().map(|own| {
+            let sides = own.products.iter().chain(&own.reactants).map(|(_, math)| math);
+            let names = sides.chain(&own.rate).flat_map(Expression::names);
+            (names.collect(), own.place.clone())
+        });
+        let events = self.events.iter().map(|own| {
+            let values = own.assignments.iter().map(|(_, math)| math);
+            let parts = values.chain([&own.trigger]).chain(&own.delay).chain(&own.priority);
+            let targets = own.assignments.iter().map(|(name, _)| name.clone());
+            (parts.flat_map(Expression::names).chain(targets).collect(), own.place.clone())
+        });
+        let factors = self.quantities.iter().filter_map(|own| match &own.kind {
+            Kind::Species(Species { conversion: Some(factor), .. }) => {
+                Some((BTreeSet::from([factor.clone()]), own.place.clone()))
+            }
+            _ => None,
+        });
+        rules.chain(reactions).chain(events).chain(factors)
     }
 
     /// Makes a constant one that has a value before time 0, where the model comes to rest, and another
@@ -228,11 +260,10 @@ fn packages(root: &Element<'_, '_>) -> Result<(), Refusal> {
 impl Reader {
     fn new(model: &Element<'_, '_>, level: u32) -> Reader {
         let id = model.text("id").or_else(|| model.text("name")).filter(|id| !id.is_empty());
-        let notes = model.0.children().find(|node| node.tag_name().name() == "notes");
         let document = Document {
             id: id.unwrap_or_else(|| "Model".to_owned()),
             title: model.text("name").unwrap_or_default(),
-            notes: notes.map_or(String::new(), |notes| Element(notes).words()),
+            notes: model.notes(),
             quantities: Vec::new(),
             reactions: Vec::new(),
             assignments: Vec::new(),
@@ -314,7 +345,14 @@ impl Reader {
             constant: own.truth("constant", !matches!(kind, Kind::Species(_)))?,
             kind,
             value,
+            notes: own.notes(),
+            place: place(own),
         })
+    }
+
+    /// Whether something of this name and kind is declared before.
+    fn declares(&self, id: &str, is: fn(&Kind) -> bool) -> bool {
+        self.document.quantities.iter().any(|other| other.id == id && is(&other.kind))
     }
 
     fn species(&mut self, own: &Element<'_, '_>) -> Result<(), Refusal> {
@@ -322,6 +360,9 @@ impl Reader {
             (own.number("initialAmount")?, own.number("initialConcentration")?);
         let compartment = own.required("compartment")?;
         let is_point = self.points.contains(&compartment);
+        if !is_point && !self.declares(&compartment, |kind| matches!(kind, Kind::Compartment)) {
+            return Err(own.wrong(format!("no compartment `{compartment}` is declared")));
+        }
         let species = Species {
             compartment,
             is_amount: own.truth("hasOnlySubstanceUnits", false)? || is_point,
@@ -373,9 +414,8 @@ impl Reader {
         if own.truth("fast", false)? {
             return Err(own.unsupported("a fast reaction"));
         }
-        let law = own.child("kineticLaw");
         let mut rate = None;
-        if let Some(law) = &law {
+        if let Some(law) = &own.child("kineticLaw") {
             let mut scope = self.scope.clone();
             let list = if self.level == 2 { "listOfParameters" } else { "listOfLocalParameters" };
             for local in law.list(list) {
@@ -389,6 +429,14 @@ impl Reader {
             }
             rate = mathml::math(law, &scope)?;
         }
+        if rate.is_none() {
+            let fault = Fault::new(BAD_OPTION, format!("the reaction `{id}` has no kinetic law"))
+                .help("give it a `kineticLaw` with mathematics, or remove it");
+            return Err(own.refusal(fault));
+        }
+        for modifier in own.list("listOfModifiers") {
+            self.species_of(&modifier)?;
+        }
         let mut sides = Vec::new();
         for list in ["listOfProducts", "listOfReactants"] {
             let references = own.list(list);
@@ -399,13 +447,24 @@ impl Reader {
         let reactants = sides.pop().unwrap_or_default();
         let products = sides.pop().unwrap_or_default();
         let title = own.text("name").unwrap_or_default();
-        self.document.reactions.push(Reaction { id, title, rate, products, reactants });
+        let (notes, place) = (own.notes(), place(own));
+        let reaction = Reaction { id, title, rate, notes, place, products, reactants };
+        self.document.reactions.push(reaction);
         Ok(())
+    }
+
+    /// The species that a reference names.
+    fn species_of(&self, own: &Element<'_, '_>) -> Result<String, Refusal> {
+        let species = own.required("species")?;
+        match self.declares(&species, |kind| matches!(kind, Kind::Species(_))) {
+            true => Ok(species),
+            false => Err(own.wrong(format!("no species `{species}` is declared"))),
+        }
     }
 
     /// A species with its stoichiometry.
     fn reference(&mut self, own: &Element<'_, '_>) -> Result<(String, Expression), Refusal> {
-        let species = own.required("species")?;
+        let species = self.species_of(own)?;
         if let Some(element) = own.child("stoichiometryMath")
             && let Some(math) = mathml::math(&element, &self.scope)?
         {

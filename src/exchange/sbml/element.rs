@@ -84,6 +84,12 @@ impl<'a, 'i> Element<'a, 'i> {
         }
     }
 
+    /// The text of its notes.
+    pub(super) fn notes(&self) -> String {
+        let notes = self.0.children().find(|node| node.tag_name().name() == "notes");
+        notes.map_or(String::new(), |notes| Element(notes).words())
+    }
+
     /// All text in it, white space reduced.
     pub(super) fn words(&self) -> String {
         let text: Vec<&str> = self

@@ -30,7 +30,7 @@ pub(super) fn translate(own: &mut Translation<'_>) -> Result<(), Refusal> {
         true => events.iter().for_each(|event| simple(own, event)),
         false => general(own, &events),
     }
-    Ok(())
+    own.check_size()
 }
 
 fn check(own: &Translation<'_>, event: &Event) -> Result<(), Refusal> {

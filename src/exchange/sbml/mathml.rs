@@ -2,8 +2,12 @@
 
 use super::element::{Element, number};
 use crate::Refusal;
+use crate::diag::Fault;
 use crate::expression::{Expression, Function};
+use crate::registry::BAD_OPTION;
+use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 /// The Avogadro constant that SBML prescribes, that of 2006.
 const AVOGADRO: f64 = 6.022_141_79e23;
@@ -16,9 +20,15 @@ pub(super) struct Lambda {
     pub(super) body: Option<Expression>,
 }
 
+/// Most parts that all calls of defined functions in a document may become, and rules in place of names. In the
+/// benchmark collection of PEtab and in the semantic suite of SBML functions become 300 at most.
+pub(super) const MOST_PARTS: usize = 1_000_000;
+
 /// What names in mathematics mean.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scope {
+    /// How many parts the calls of functions have become.
+    parts: Rc<Cell<usize>>,
     /// The functions that are defined.
     pub(super) functions: BTreeMap<String, Lambda>,
     /// Local names, with the names that they have in the model.
@@ -204,5 +214,14 @@ fn called(
     let Some(body) = &own.body else {
         return Err(head.wrong(format!("the function `{name}` has no mathematics")));
     };
-    Ok(body.substituted(&own.arguments.iter().cloned().zip(arguments).collect()))
+    let values = own.arguments.iter().cloned().zip(arguments).collect();
+    let size = scope.parts.get().saturating_add(body.size_with(&values));
+    scope.parts.set(size);
+    if size > MOST_PARTS {
+        let message = format!("calls of `{name}` and other functions become too many terms");
+        let fault = Fault::new(BAD_OPTION, message)
+            .help("function definitions that call each other multiply: write fewer of them");
+        return Err(head.refusal(fault));
+    }
+    Ok(body.substituted(&values))
 }

@@ -82,6 +82,8 @@ fn add(document: &mut Document, parameters: Vec<NewParameter>, variables: Vec<Ne
         constant,
         kind: Kind::Parameter,
         value,
+        notes: String::new(),
+        place: 0..0,
     };
     for (id, title, value) in parameters {
         match document.quantities.iter_mut().find(|own| own.id == id) {

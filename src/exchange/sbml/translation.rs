@@ -1,12 +1,14 @@
 //! A model of SBML as Modelica text.
 
 use super::document::{Document, Kind, Quantity, Species};
+use super::mathml::MOST_PARTS;
 use super::roles::{Role, Roles, definition, reached};
 use crate::Refusal;
 use crate::diag::Fault;
 use crate::expression::{Context, Expression, Function, printed};
 use crate::names::{identifier, quoted};
 use crate::registry::BAD_OPTION;
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -31,6 +33,8 @@ pub(super) struct Translation<'a> {
     pub(super) start: BTreeMap<String, Expression>,
     /// Parameters that are known before the simulation.
     bound: BTreeSet<String>,
+    /// How many parts definitions in place of names have become.
+    parts: Cell<usize>,
     pub(super) class: Class,
 }
 
@@ -54,7 +58,7 @@ impl<'a> Translation<'a> {
     ///
     /// # Errors
     ///
-    /// Names that nothing declares.
+    /// Names that nothing declares, and initial values that nothing gives.
     pub(super) fn new(
         mut document: Document,
         initial_parameters: &'a BTreeMap<String, String>,
@@ -67,13 +71,24 @@ impl<'a> Translation<'a> {
             (id, amount)
         });
         let amounts = amounts.collect();
-        let (start, bound, class) = (BTreeMap::new(), BTreeSet::new(), Class::default());
-        let mut own =
-            Translation { document, roles, amounts, initial_parameters, start, bound, class };
-        own.check()?;
+        let mut own = Translation {
+            document,
+            roles,
+            amounts,
+            initial_parameters,
+            start: BTreeMap::new(),
+            bound: BTreeSet::new(),
+            parts: Cell::new(0),
+            class: Class::default(),
+        };
+        own.check_names()?;
+        own.check_cycles()?;
+        own.check_algebraic()?;
         own.derivatives();
         own.delays();
+        own.check_size()?;
         own.initial_values();
+        own.check_initial_values()?;
         Ok(own)
     }
 
@@ -102,22 +117,76 @@ impl Translation<'_> {
     }
 
     /// Refuses names that nothing declares, in all mathematics.
-    fn check(&self) -> Result<(), Refusal> {
+    fn check_names(&self) -> Result<(), Refusal> {
         let document = &self.document;
         let reactions = document.reactions.iter().map(|own| own.id.as_str());
         let known: BTreeSet<&str> =
             document.quantities.iter().map(|own| own.id.as_str()).chain(reactions).collect();
-        let all = [&document.assignments, &document.rates, &document.algebraic, &document.initial];
-        for rule in all.into_iter().flatten() {
-            let mut names = rule.math.names();
-            if !rule.variable.is_empty() {
-                names.insert(rule.variable.clone());
-            }
+        for (names, place) in document.mentions() {
             if let Some(name) = names.iter().find(|name| !known.contains(name.as_str())) {
                 let fault = Fault::new(BAD_OPTION, format!("nothing declares `{name}`"));
-                return Err(Refusal::new(rule.place.clone(), fault));
+                return Err(Refusal::new(place, fault));
             }
         }
+        Ok(())
+    }
+
+    /// Refuses assignment rules and rates of reactions that depend on themselves.
+    fn check_cycles(&self) -> Result<(), Refusal> {
+        let document = &self.document;
+        let rules = document.assignments.iter().map(|own| (&own.variable, &own.math, &own.place));
+        let rates = document.reactions.iter().filter_map(|own| {
+            let rate = own.rate.as_ref()?;
+            Some((&own.id, rate, &own.place))
+        });
+        for (name, math, place) in rules.chain(rates) {
+            if reached(document, math).contains(name) {
+                let fault = Fault::new(BAD_OPTION, format!("`{name}` depends on itself"))
+                    .help("state such an equation as an algebraic rule");
+                return Err(Refusal::new(place.clone(), fault));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses rules that are inserted into each other until they fill the memory.
+    pub(super) fn check_size(&self) -> Result<(), Refusal> {
+        if self.parts.get() <= MOST_PARTS {
+            return Ok(());
+        }
+        let fault = Fault::new(
+            BAD_OPTION,
+            "delays and events depend on rules that become too many terms in each other",
+        );
+        let place = self.document.assignments.first().map_or(0..0, |rule| rule.place.clone());
+        Err(Refusal::new(place, fault))
+    }
+
+    /// Refuses what changes from a value on that nothing gives.
+    fn check_initial_values(&self) -> Result<(), Refusal> {
+        let is_open = |own: &&Quantity| {
+            let role = self.roles.get(&own.id);
+            let is_parameter = role == Role::Constant && matches!(own.kind, Kind::Parameter);
+            let has_value =
+                self.start.contains_key(&own.id) || self.initial_parameters.contains_key(&own.id);
+            !is_parameter && ![Role::Assigned, Role::Algebraic].contains(&role) && !has_value
+        };
+        let Some(open) = self.document.quantities.iter().find(is_open) else { return Ok(()) };
+        let fault =
+            Fault::new(BAD_OPTION, format!("`{}` has no initial value", open.id)).help(match open
+                .kind
+            {
+                Kind::Species(_) => "give it an `initialAmount` or `initialConcentration`",
+                Kind::Compartment => "give it a `size`",
+                Kind::Stoichiometry => "give it a `stoichiometry`",
+                Kind::Parameter => "give it a `value`",
+            });
+        Err(Refusal::new(open.place.clone(), fault))
+    }
+
+    /// Refuses algebraic rules that determine nothing.
+    fn check_algebraic(&self) -> Result<(), Refusal> {
+        let document = &self.document;
         let open = document.algebraic.len()
             != document
                 .quantities
@@ -242,6 +311,7 @@ impl Translation<'_> {
 
     fn declare(&mut self, own: &Quantity) {
         let comment = comment(&own.title, &own.id, &own.unit);
+        self.class.declarations.extend(remarks(&own.notes));
         let name = identifier(&own.id);
         let role = self.roles.get(&own.id);
         if let Some(size) = self.size_of(&own.id) {
@@ -337,6 +407,7 @@ impl Translation<'_> {
         for own in &self.document.reactions {
             let comment = comment(&own.title, &own.id, "");
             let name = identifier(&own.id);
+            self.class.declarations.extend(remarks(&own.notes));
             self.class.declarations.push(format!("Real {name}{comment};"));
             let rate = own.rate.clone().unwrap_or(Expression::Number(0.0));
             self.class.equations.push(format!("{name} = {};", real(&rate)));
@@ -410,12 +481,24 @@ impl Translation<'_> {
 
     /// An expression with definitions in place of names, of those that `is` holds for.
     fn defined(&self, own: &Expression, is: &dyn Fn(&Expression) -> bool) -> Expression {
-        own.replaced(&|part| match part {
-            Expression::Name(name) => {
-                let math = self.symbol_definition(name).filter(is)?;
-                Some(self.defined(&math, is))
+        self.defined_below(&[], own, is)
+    }
+
+    /// The same within the definitions of `names`: the size of a compartment may depend on a concentration in it.
+    fn defined_below(
+        &self,
+        names: &[&str],
+        own: &Expression,
+        is: &dyn Fn(&Expression) -> bool,
+    ) -> Expression {
+        own.replaced(&|part| {
+            let Expression::Name(name) = part else { return None };
+            if names.contains(&name.as_str()) || self.parts.get() > MOST_PARTS {
+                return None;
             }
-            _ => None,
+            let math = self.symbol_definition(name).filter(is)?;
+            self.parts.set(self.parts.get().saturating_add(math.size()));
+            Some(self.defined_below(&[names, &[name.as_str()]].concat(), &math, is))
         })
     }
 
@@ -431,10 +514,8 @@ impl Translation<'_> {
     fn text(&self, name: &str) -> String {
         let mut text = String::new();
         let document = &self.document;
-        if !document.notes.is_empty() {
-            for line in wrapped(&document.notes) {
-                _ = writeln!(text, "// {line}");
-            }
+        for line in remarks(&document.notes) {
+            _ = writeln!(text, "{line}");
         }
         let title = comment(&document.title, name, "");
         _ = writeln!(text, "model {}{title}", identifier(name));
@@ -494,12 +575,12 @@ fn species_start(species: &Species, value: f64, stores_amount: bool) -> Expressi
 }
 
 /// Lines of a comment.
-fn wrapped(text: &str) -> Vec<String> {
+fn remarks(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
-        match lines.last_mut().filter(|line| line.len() + word.len() < 95) {
+        match lines.last_mut().filter(|line| line.len() + word.len() < 98) {
             Some(line) => *line += &format!(" {word}"),
-            None => lines.push(word.to_owned()),
+            None => lines.push(format!("// {word}")),
         }
     }
     lines

@@ -213,7 +213,18 @@ fn what_is_not_supported_is_refused_at_its_place() {
         ("m.tsv", "low\t5\t", "low\t-5\t", "missing or negative", "m.tsv:27"),
         ("o.tsv", "log10", "sqrt", "the transformation `sqrt` is not supported", "o.tsv:3"),
         ("o.tsv", "1_y*x", "1_y**", "is not a formula", "o.tsv:2"),
-        ("p.yaml", "version: 1", "version: 2.0.0", "version 2 of PEtab is not supported", "p.yaml"),
+        (
+            "p.yaml",
+            "version: 1",
+            "version: 2.0.0",
+            "version 2 of PEtab is not supported",
+            "p.yaml:1:",
+        ),
+        ("p.yaml", "[m.xml]", "[m.xml, n.xml]", "the problem has 2 models", "p.yaml:4:"),
+        ("p.yaml", "[o.tsv]", "[q.tsv]", "cannot read `q.tsv`", "p.yaml:6:"),
+        ("p.yaml", "[o.tsv]", "[o.tsv", "the file is not YAML", "p.yaml:7:"),
+        ("c.tsv", "low\tfixed\t0", "low\tfixed\t0\t7", "the cell `7` has no column", "c.tsv:2:"),
+        ("c.tsv", "\tx\tu\n", "\tx\tx\n", "there are two columns `x`", "c.tsv:1:"),
         ("p.tsv", "scale\tlin", "k\tlin", "a row above has the same parameter", "p.tsv:3"),
         ("o.tsv", "logarithm\tx", "y\tx", "a row above has the same observable", "o.tsv:3"),
         ("c.tsv", "high\tx_high", "low\tx_high", "a row above has the same condition", "c.tsv:3"),
@@ -230,6 +241,109 @@ fn what_is_not_supported_is_refused_at_its_place() {
         assert_eq!(code, 1, "{out}{errors}");
         assert!(errors.contains(said) && errors.contains(place), "{said} {place}\n{errors}");
     }
+}
+
+/// Imports a document of `tests/exchange` with a part of it replaced: what is said, or the model.
+fn changed(file: &str, old: &str, new: &str) -> Result<String, String> {
+    let text = fs::read_to_string(project("tests/exchange").join(file)).unwrap();
+    assert!(text.contains(old), "{old}");
+    let here = folder(&[("model.xml", &text.replacen(old, new, 1))]);
+    let (code, _, errors) = gapi(&here, &["import", "model.xml", "--out", "m"]);
+    if code != 0 {
+        return Err(errors);
+    }
+    let model = fs::read_dir(here.path().join("m")).unwrap().next().unwrap().unwrap().path();
+    Ok(fs::read_to_string(model).unwrap())
+}
+
+#[test]
+fn what_a_model_does_not_say_is_refused_at_its_line() {
+    let law = "<kineticLaw><math xmlns=\"http://www.w3.org/1998/Math/MathML\"><apply><times/><ci>k</ci>\
+               <ci>S</ci><ci>V</ci></apply></math></kineticLaw>";
+    for (old, new, said, line) in [
+        ("species=\"S\"", "species=\"Q\"", "no species `Q` is declared", 24),
+        (" initialConcentration=\"3\"", "", "`S` has no initial value", 8),
+        (law, "", "the reaction `decay` has no kinetic law", 24),
+        (law, "<kineticLaw/>", "the reaction `decay` has no kinetic law", 24),
+        ("compartment=\"V\"", "compartment=\"W\"", "no compartment `W` is declared", 8),
+        ("size=\"2\" ", "", "`V` has no initial value", 5),
+        ("<ci>k</ci><ci>S</ci>", "<ci>q</ci><ci>S</ci>", "nothing declares `q`", 24),
+        (
+            "<ci>V</ci></apply><ci>time",
+            "<ci>V</ci></apply><ci>total",
+            "`total` depends on itself",
+            21,
+        ),
+    ] {
+        let errors = changed("volume.xml", old, new).unwrap_err();
+        let place = format!("model.xml:{line}:");
+        assert!(errors.contains(said) && errors.contains(&place), "{said} {place}\n{errors}");
+    }
+}
+
+/// f1(x) = x + x, f2(x) = f1(f1(x)), f3(x) = f2(f2(x)) …: each has the square of the terms of the one before.
+#[test]
+fn function_definitions_that_multiply_are_refused() {
+    let math =
+        |inner: &str| format!("<math xmlns=\"http://www.w3.org/1998/Math/MathML\">{inner}</math>");
+    let mut definitions = "<listOfFunctionDefinitions>".to_owned();
+    for k in 1..9 {
+        let body = match k {
+            1 => "<apply><plus/><ci>x</ci><ci>x</ci></apply>".to_owned(),
+            _ => {
+                let call = |inner: &str| format!("<apply><ci>f{}</ci>{inner}</apply>", k - 1);
+                call(&call("<ci>x</ci>"))
+            }
+        };
+        let lambda = format!("<lambda><bvar><ci>x</ci></bvar>{body}</lambda>");
+        definitions +=
+            &format!("<functionDefinition id=\"f{k}\">{}</functionDefinition>", math(&lambda));
+    }
+    let new = format!("{definitions}</listOfFunctionDefinitions><listOfCompartments>");
+    let errors = changed("volume.xml", "<listOfCompartments>", &new).unwrap_err();
+    assert!(errors.contains("become too many terms"), "{errors}");
+}
+
+/// a1 = a0², a2 = a1² …: what is delayed contains a power of two of terms.
+#[test]
+fn rules_that_multiply_are_refused() {
+    let math =
+        |inner: &str| format!("<math xmlns=\"http://www.w3.org/1998/Math/MathML\">{inner}</math>");
+    let rule = |name: &str, inner: &str| {
+        format!("<assignmentRule variable=\"{name}\">{}</assignmentRule>", math(inner))
+    };
+    let mut declared = String::new();
+    let mut rules = rule("a0", "<ci>S</ci>");
+    for k in 0..60 {
+        declared += &format!("<parameter id=\"a{k}\" constant=\"false\"/>");
+        let inner = format!("<apply><times/><ci>a{k}</ci><ci>a{k}</ci></apply>");
+        rules += &rule(&format!("a{}", k + 1), &inner);
+    }
+    declared +=
+        "<parameter id=\"a60\" constant=\"false\"/><parameter id=\"d\" constant=\"false\"/>";
+    let delay = "<csymbol definitionURL=\"http://www.sbml.org/sbml/symbols/delay\"/>";
+    rules += &rule("d", &format!("<apply>{delay}<ci>a60</ci><cn>1</cn></apply>"));
+    let old = "<parameter id=\"k\" value=\"0.5\" constant=\"true\"/>";
+    let text = fs::read_to_string(project("tests/exchange").join("volume.xml")).unwrap();
+    let text = text.replacen(old, &format!("{old}{declared}"), 1);
+    let text = text.replacen("<listOfRules>", &format!("<listOfRules>{rules}"), 1);
+    let here = folder(&[("model.xml", &text)]);
+    let (code, _, errors) = gapi(&here, &["import", "model.xml", "--out", "m"]);
+    assert!(code == 1 && errors.contains("become too many terms"), "{errors}");
+}
+
+#[test]
+fn notes_are_comments_of_what_they_are_about() {
+    let model = changed(
+        "volume.xml",
+        "constant=\"false\"/>\n      <species id=\"time\"",
+        "constant=\"false\">\
+                        <notes><p>Measured by\nNMR.</p></notes></species>\n      <species id=\"time\"",
+    );
+    let model = model.unwrap();
+    let (_, after) =
+        model.split_once("  // Measured by NMR.\n  Real S").unwrap_or_else(|| panic!("{model}"));
+    assert!(after.starts_with(['_', ';', '(', ' ']), "{model}");
 }
 
 /// The folder that a variable names; says where there is none.
