@@ -35,7 +35,7 @@ pub(crate) mod spectrum;
 pub(crate) mod static_curve;
 pub mod stored;
 pub mod translated;
-mod typed;
+pub(crate) mod typed;
 pub(crate) mod uses;
 pub(crate) mod variable_unit;
 pub mod verification;

@@ -61,7 +61,7 @@ pub(super) fn unquoted(text: &str) -> &str {
 }
 
 /// The number that stands for a value: of a literal its ordinal.
-pub(super) fn number_in(name: &str, text: &str, base: Option<&BaseType>) -> Result<f64, Fault> {
+pub(crate) fn number_in(name: &str, text: &str, base: Option<&BaseType>) -> Result<f64, Fault> {
     if let Some(BaseType::Enumeration(definition)) = base {
         let literal = text.rsplit('.').next().unwrap_or(text);
         if let Some(at) = definition.literals.iter().position(|known| *known == literal) {

@@ -853,14 +853,15 @@ fn fits_begin_with_data_before_the_start_time() {
     }
 }
 
+const HALVED: &str = "model M type Mode = enumeration(off, on); parameter Mode mode = Mode.off; \
+                     parameter Real k = 1; Real x(start = 1, fixed = true); output Real y = x; equation \
+                     der(x) = -k*x*(if mode == Mode.on then 2 else 1); \
+                     annotation(experiment(Tolerance = 1e-9)); end M;";
+
 /// Literals of enumerations are values in problem files and modifications of units; commands that set initial
 /// values take their numbers.
 #[test]
 fn literals_are_values_of_units() {
-    let text = "model M type Mode = enumeration(off, on); parameter Mode mode = Mode.off; \
-                parameter Real k = 1; Real x(start = 1, fixed = true); output Real y = x; equation \
-                der(x) = -k*x*(if mode == Mode.on then 2 else 1); annotation(experiment(Tolerance = 1e-9)); \
-                end M;";
     let row = |n: u32| format!("{},{}\n", 0.05 * f64::from(n), (-0.1 * f64::from(n)).exp());
     let data: String = (0..=20).map(row).collect();
     let script = "importFMU(\"unit.fmu\")\n\
@@ -874,7 +875,8 @@ fn literals_are_values_of_units() {
                   initialValues={3, 2}, finalNames={\"y\"})\n\
                   print(String(z[1], significantDigits=9))\n\
                   simulateModel(\"M_fmu(mode = Mode.slow)\", stopTime=1)\n";
-    let here = folder(&[("M.mo", text), ("d.csv", &format!("time,y\n{data}")), ("s.mos", script)]);
+    let here =
+        folder(&[("M.mo", HALVED), ("d.csv", &format!("time,y\n{data}")), ("s.mos", script)]);
     let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
     assert_eq!(code, 0, "{out}{errors}");
     let (_, out, errors) = gapi(&here, &["run", "s.mos", "--allow-external", "--out", "s"]);
@@ -883,25 +885,41 @@ fn literals_are_values_of_units() {
         near(number_after(&text, at), exponent.exp(), 1e-5);
     }
     assert!(text.contains("its literals are off, on"), "{text}");
-    for (mode, k) in [("on", Some(1.0)), ("Mode.on", Some(1.0)), ("off", Some(2.0)), ("slow", None)]
-    {
+    let modes = [("on", Some(1.0)), ("Mode.on", Some(1.0)), ("off", Some(2.0)), ("slow", None)];
+    let heads = ["model = \"unit.fmu\"", "model = \"M\"\nfiles = [\"M.mo\"]"];
+    let cases = heads.iter().flat_map(|head| modes.map(|(mode, k)| (head, mode, k)));
+    for (number, (head, mode, k)) in cases.enumerate() {
         let problem = format!(
-            "model = \"unit.fmu\"\n[parameters]\nk = {{ min = 0.1, max = 10 }}\n[[experiment]]\n\
+            "{head}\n[parameters]\nk = {{ min = 0.1, max = 10 }}\n[[experiment]]\n\
              data = \"d.csv\"\noutputs = {{ y = \"y\" }}\nset = {{ mode = \"{mode}\" }}\n"
         );
         fs::write(here.path().join("p.toml"), problem).expect("written");
-        let identify = ["identify", "p.toml", "--allow-external", "--out", mode];
+        let out = number.to_string();
+        let identify = ["identify", "p.toml", "--allow-external", "--out", &out];
         let (code, out, errors) = gapi(&here, &identify);
         let Some(k) = k else {
             assert!(code == 1 && errors.contains("its literals are off, on"), "{out}{errors}");
             continue;
         };
         assert_eq!(code, 0, "{out}{errors}");
-        let path = here.path().join(mode).join("result.json");
+        let path = here.path().join(number.to_string()).join("result.json");
         let text = fs::read_to_string(path).expect("a result");
         let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         near(result["parameters"][0]["value"].as_f64().expect("a number"), k, 1e-4);
     }
+}
+
+/// A literal that a problem fixes is one in the calibrated model.
+#[test]
+fn literals_are_values_of_calibrated_models() {
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+                   mode = { fixed = \"on\" }\n[[experiment]]\ndata = \"d.csv\"\noutputs = { y = \"y\" }\n";
+    let data = "time,y\n0,1\n0.5,0.36788\n1,0.13534\n1.5,0.04979\n";
+    let here = folder(&[("M.mo", HALVED), ("d.csv", data), ("p.toml", problem)]);
+    let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let model = fs::read_to_string(here.path().join("o/Calibrated.mo")).expect("a model");
+    assert!(model.contains("mode = .M.Mode.on"), "{model}");
 }
 
 /// Platforms that a script asks for by name are noted, those of every importer are not.

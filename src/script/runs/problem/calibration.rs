@@ -42,7 +42,11 @@ impl Calibration {
                 Role::Fixed(ValueEntry::Truth(value)) => Some(value.to_string()),
                 Role::Fixed(ValueEntry::Number(value)) => Some(modelica_number(value)),
                 Role::Fixed(text @ ValueEntry::Text(_)) => {
-                    let literal = enclosing_class::literal(&text, name, Span::NONE).ok()?;
+                    let at = program.find_parameter(name).ok();
+                    let base = at.map(|at| &program.parameters()[at].base);
+                    let declared = ("", base);
+                    let literal = enclosing_class::value(&text, (name, Span::NONE), declared);
+                    let literal = literal.ok()?;
                     Some(print::expression(&literal))
                 }
                 Role::Tied(expression) => Some(expression),

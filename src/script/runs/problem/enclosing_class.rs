@@ -6,8 +6,9 @@
 use super::file::ValueEntry;
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
-use crate::flatten::{self, RecordedInput};
+use crate::flatten::{self, BaseType, RecordedInput};
 use crate::models::classes::Enclosing;
+use crate::models::typed::number_in;
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::{
@@ -113,6 +114,42 @@ pub(super) fn literal(value: &ValueEntry, name: &str, place: Span) -> Result<Exp
         },
     };
     Ok(Expression::new(kind, place))
+}
+
+/// The same for a variable of a type of `model`: a String is a literal of an enumeration, as in `--set`.
+///
+/// # Errors
+///
+/// Also literals that the enumeration does not have.
+pub(super) fn value(
+    value: &ValueEntry,
+    (name, place): (&str, Span),
+    (model, base): (&str, Option<&BaseType>),
+) -> Result<Expression, Fault> {
+    let (ValueEntry::Text(text), Some(BaseType::Enumeration(definition))) = (value, base) else {
+        return literal(value, name, place);
+    };
+    let number = number_in(name, text.trim(), base)?;
+    let found = (1_u32..).map(f64::from).zip(&definition.literals).find(|(own, _)| *own == number);
+    let Some((_, found)) = found else { return literal(value, name, place) };
+    let type_name = type_in(model, &BaseType::Enumeration(definition.clone()));
+    let read = expression(&format!("{type_name}.{found}"), None);
+    read.map(|read| Expression { span: place, ..read })
+        .map_err(|error| Fault::new(error.code, error.message.clone()))
+}
+
+/// What a class that extends `model` calls a type: that of an enumeration within the model is inherited.
+pub(super) fn type_in(model: &str, base: &BaseType) -> String {
+    match base {
+        BaseType::Boolean => "Boolean".to_owned(),
+        BaseType::Integer => "Integer".to_owned(),
+        BaseType::Enumeration(definition) => {
+            let name = definition.name.to_string();
+            let inherited = name.strip_prefix(model).and_then(|rest| rest.strip_prefix('.'));
+            inherited.map_or_else(|| format!(".{name}"), str::to_owned)
+        }
+        _ => "Real".to_owned(),
+    }
 }
 
 /// A name of the class as an expression.

@@ -324,14 +324,16 @@ impl Source<'_> {
         let (label, segment, free) = (self.label, self.segment, self.free);
         let setting = parameters::Setting { file, entry, label, segment, free, of_deviations: &[] };
         let formulas = deviation::formulas(entry, self.table);
-        let mut of_deviations = Vec::new();
-        if !formulas.is_empty() {
-            let flat = simulation::flattened(session, &file.model)?.model;
-            of_deviations = deviation::declare(formulas, file, &flat, &mut enclosing)
-                .map_err(|error| vec![error])?;
-        }
+        let needed = (!formulas.is_empty(), setting.needs_types());
+        let plain = types_of(session, &file.model, needed)?;
+        let types = plain.as_ref().map(|own| &own.model);
+        let of_deviations = match types.filter(|_| !formulas.is_empty()) {
+            Some(flat) => deviation::declare(formulas, file, flat, &mut enclosing)
+                .map_err(|error| vec![error])?,
+            None => Vec::new(),
+        };
         let setting = parameters::Setting { of_deviations: &of_deviations, ..setting };
-        let parameters = setting.parameters(&mut enclosing).map_err(|error| vec![error])?;
+        let parameters = setting.parameters(types, &mut enclosing).map_err(|error| vec![error])?;
         note_used_twice(entry, notes);
         note_swapped(entry, notes);
         let (mut is_driven, mut undecided) = (false, Vec::new());
@@ -444,6 +446,20 @@ impl Abscissa {
         }
         let (unit, about) = (comparison.unit(&self.name), (comparison.table, notes));
         Ok(data::in_unit(&self.column, &self.name, &unit, &self.entry, about)?.values)
+    }
+}
+
+/// The model of a problem without what an experiment sets, where formulas need it, or values do: for these a model
+/// that cannot be translated without them has no types.
+fn types_of(
+    session: &mut Session,
+    model: &str,
+    (for_formulas, for_values): (bool, bool),
+) -> Result<Option<flatten::Flattened>, Vec<Diagnostic>> {
+    match (for_formulas, for_values) {
+        (true, _) => simulation::flattened(session, model).map(Some),
+        (false, true) => Ok(simulation::flattened(session, model).ok()),
+        (false, false) => Ok(None),
     }
 }
 

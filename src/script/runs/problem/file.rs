@@ -76,7 +76,7 @@ impl Deref for ParameterEntry {
 pub(super) enum ValueEntry {
     Number(f64),
     Truth(bool),
-    /// A String; of an FMU also a literal of an enumeration.
+    /// A String, or a literal of an enumeration.
     Text(String),
 }
 

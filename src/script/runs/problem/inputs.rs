@@ -128,7 +128,7 @@ pub(super) fn inputs(
     };
     let (all, undecided) = recorded(entry, table, x, &declared, notes)?;
     for one in &all {
-        let kind = type_in(&flat.name, &one.base);
+        let kind = enclosing_class::type_in(&flat.name, &one.base);
         declare((&one.name, &kind, one.place), &one.followed, enclosing);
     }
     Ok(undecided)
@@ -371,20 +371,6 @@ fn check_literals(name: &str, literals: &[(f64, String)], column: &Column) -> Re
         range.check(&format!("{}: the input `{name}`", column.place(row)), *value)?;
     }
     Ok(())
-}
-
-/// What a class that extends `model` calls a type: that of an enumeration within the model is inherited.
-fn type_in(model: &str, base: &BaseType) -> String {
-    match base {
-        BaseType::Boolean => "Boolean".to_owned(),
-        BaseType::Integer => "Integer".to_owned(),
-        BaseType::Enumeration(definition) => {
-            let name = definition.name.to_string();
-            let inherited = name.strip_prefix(model).and_then(|rest| rest.strip_prefix('.'));
-            inherited.map_or_else(|| format!(".{name}"), str::to_owned)
-        }
-        _ => "Real".to_owned(),
-    }
 }
 
 /// Lets an input of the model follow its samples, through an input of the class around the model.

@@ -4,7 +4,7 @@
 use super::data::Notes;
 use super::enclosing_class::{self, EnclosingClass, QuotedNames, References, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
-use super::flat::attribute;
+use super::flat::{attribute, variable_of};
 use super::segments::Segment;
 use super::{deviation, dynamics, noise};
 use crate::Session;
@@ -37,7 +37,26 @@ pub(super) struct Setting<'a> {
     pub of_deviations: &'a [String],
 }
 
+/// The types of the variables of a model, where it is known.
+pub(super) type Types<'a> = Option<&'a FlatModel>;
+
+/// The name of a model and the type of one of its variables.
+fn declared<'a>(types: Types<'a>, name: &str) -> (&'a str, Option<&'a BaseType>) {
+    let Some(flat) = types else { return ("", None) };
+    (&flat.name, variable_of(flat, name).map(|own| &own.base))
+}
+
 impl Setting<'_> {
+    /// Whether a value is a String: what it means depends on the type of the variable.
+    pub(super) fn needs_types(&self) -> bool {
+        let is_string = |value: &ValueEntry| {
+            matches!(value, ValueEntry::Text(_)) && self.expression_of(value).is_none()
+        };
+        let fixed = self.file.parameters.values().filter_map(|own| own.fixed.as_ref());
+        let values = self.entry.set.values.values().chain(self.entry.start.values());
+        fixed.chain(values).any(is_string)
+    }
+
     /// Adds modifications to the class around the model; the free parameters with their names in it.
     ///
     /// # Errors
@@ -45,6 +64,7 @@ impl Setting<'_> {
     /// Entries that contradict each other or are no values.
     pub(super) fn parameters(
         &self,
+        types: Types<'_>,
         enclosing: &mut EnclosingClass,
     ) -> Result<Vec<(usize, String)>, Diagnostic> {
         let mut names = Vec::new();
@@ -68,7 +88,10 @@ impl Setting<'_> {
                     names.push((free, own.clone()));
                     enclosing_class::reference(&own, place)
                 }
-                Role::Fixed(value) => enclosing_class::literal(&value, name, place).at(place)?,
+                Role::Fixed(value) => {
+                    let declared = declared(types, name);
+                    enclosing_class::value(&value, (name, place), declared).at(place)?
+                }
                 Role::Tied(text) => self.tied(name, &text)?,
             };
             if dynamics::is_delay(self.file, name) {
@@ -80,7 +103,7 @@ impl Setting<'_> {
             }
         }
         names.extend(noise::declare((self.file, self.entry), self.free, enclosing)?);
-        self.values(enclosing)?;
+        self.values(types, enclosing)?;
         Ok(names)
     }
 
@@ -152,7 +175,7 @@ impl Setting<'_> {
     }
 
     /// The values that the experiment itself sets.
-    fn values(&self, enclosing: &mut EnclosingClass) -> Result<(), Diagnostic> {
+    fn values(&self, types: Types<'_>, enclosing: &mut EnclosingClass) -> Result<(), Diagnostic> {
         let (entry, parameters) = (self.entry, &self.file.parameters);
         for (name, value) in &entry.set.values {
             let place = entry.places.at(&["set", name]);
@@ -165,7 +188,7 @@ impl Setting<'_> {
                 );
                 return Err(fault.at(place));
             }
-            let value = self.value(value, name, place)?;
+            let value = self.value(value, (name, place), types)?;
             enclosing.bind(name, value, place);
         }
         for (name, value) in &entry.start {
@@ -179,27 +202,35 @@ impl Setting<'_> {
                 );
                 return Err(fault.at(place));
             }
-            let value = self.value(value, name, place)?;
+            let value = self.value(value, (name, place), types)?;
             enclosing.start(name, value, place);
         }
         Ok(())
     }
 
-    /// A value of the experiment: a string of names that `[parameters]` lists is an expression of these
-    /// parameters, another one is a String.
-    fn value(&self, value: &ValueEntry, name: &str, place: Span) -> Result<Expression, Diagnostic> {
-        if let ValueEntry::Text(text) = value
-            && let Ok(mut read) = enclosing_class::expression(text, None)
-        {
-            QuotedNames.expression(&mut read);
-            let mut names = References(Vec::new());
-            names.expression(&mut read);
-            let is_listed = |own: &String| self.file.parameters.contains_key(own);
-            if !names.0.is_empty() && names.0.iter().all(is_listed) {
-                return Ok(read);
-            }
+    /// A value of the experiment.
+    fn value(
+        &self,
+        value: &ValueEntry,
+        (name, place): (&str, Span),
+        types: Types<'_>,
+    ) -> Result<Expression, Diagnostic> {
+        match self.expression_of(value) {
+            Some(read) => Ok(read),
+            None => enclosing_class::value(value, (name, place), declared(types, name)).at(place),
         }
-        enclosing_class::literal(value, name, place).at(place)
+    }
+
+    /// What a string of names that `[parameters]` lists is: an expression of these parameters; another one is a
+    /// String or a literal.
+    fn expression_of(&self, value: &ValueEntry) -> Option<Expression> {
+        let ValueEntry::Text(text) = value else { return None };
+        let mut read = enclosing_class::expression(text, None).ok()?;
+        QuotedNames.expression(&mut read);
+        let mut names = References(Vec::new());
+        names.expression(&mut read);
+        let is_listed = |own: &String| self.file.parameters.contains_key(own);
+        (!names.0.is_empty() && names.0.iter().all(is_listed)).then_some(read)
     }
 }
 
