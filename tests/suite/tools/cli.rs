@@ -215,6 +215,10 @@ end Tank;";
     let (code, _, errors) = run("e.csv");
     let is_named = errors.contains("`e.csv` has no column") && errors.contains("`u`, `open`");
     assert!(code == 1 && is_named, "{errors}");
+    fs::write(here.path().join("z.csv"), "Zeit,u\n0,1\n1,2\n").unwrap();
+    let (code, _, errors) = run("z.csv");
+    let remedy = "give the column of the times the name `time`";
+    assert!(code == 1 && errors.contains(remedy), "{errors}");
 }
 
 /// A variable of a model is not one of the script that has simulated it.

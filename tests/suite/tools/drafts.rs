@@ -183,6 +183,20 @@ fn a_unit_of_another_quantity_is_no_match() {
     assert!(text.contains("# not used: column \"v_wind\""), "{text}");
 }
 
+/// Where all parameters are those of components, the draft has them as comments to choose among.
+#[test]
+fn parameters_of_components_are_proposed() {
+    let model = "model M\n  model Tank parameter Real A = 2; parameter Real k = 0.5; Real h(start = 1, fixed = true);\n\
+                 equation A*der(h) = -k*h; end Tank;\n  Tank tank[25];\n  output Real y = tank[1].h;\nend M;\n";
+    let table = format!("time,y\n{}", rows(10, |k| format!("{k},{}", (-k / 4.0).exp())));
+    let here = folder(&[("d.csv", table.as_str()), ("M.mo", model)]);
+    let (code, out, errors) = gapi(&here, &["new", "d.csv", "--model", "M.mo"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = std::fs::read_to_string(here.path().join("d.toml")).unwrap();
+    assert!(text.contains("\n# \"tank[1].k\" = { min = "), "{text}");
+    assert!(text.contains("\n# and 30 more\n"), "{text}");
+}
+
 /// A table in the model is not estimated number by number: the draft says how one of them could be.
 #[test]
 fn tables_keep_their_numbers() {

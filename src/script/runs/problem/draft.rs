@@ -232,7 +232,11 @@ fn key(name: &str) -> String {
     if bare { name.to_owned() } else { quoted(name) }
 }
 
-/// The parameters at the top of the model, each with a range.
+/// Parameters of components that a draft lists; models of libraries have thousands.
+const MOST_INSIDE: usize = 20;
+
+/// The parameters at the top of the model, each with a range. Those of components are comments: one chooses
+/// among them.
 fn parameters(text: &mut String, subject: &Subject, roles: &Roles<'_>) {
     text.push_str(
         "\n# The parameters to estimate. Fix known values, `NAME = { fixed = 1.5 }`, or delete \
@@ -262,10 +266,23 @@ fn parameters(text: &mut String, subject: &Subject, roles: &Roles<'_>) {
         }
         count += 1;
         let measured = measured_start(&subject.flat, roles, &parameter.name);
-        text.push_str(&parameter_line(parameter, measured));
+        let line = parameter_line(parameter, measured);
+        if parameter.is_inside {
+            if count == 1 {
+                text.push_str("# All parameters are those of components: remove the `#` before those to estimate.\n");
+            }
+            if count > MOST_INSIDE {
+                continue;
+            }
+            text.push_str(if line.starts_with('#') { "" } else { "# " });
+        }
+        text.push_str(&line);
+    }
+    if count > MOST_INSIDE && subject.parameters.iter().all(|own| own.is_inside) {
+        _ = writeln!(text, "# and {} more", count - MOST_INSIDE);
     }
     if count == 0 {
-        text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
+        text.push_str("# the model has no parameters that can be estimated\n");
     }
 }
 

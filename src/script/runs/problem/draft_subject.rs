@@ -36,7 +36,7 @@ pub(super) struct Subject {
     /// Its variables.
     pub flat: FlatModel,
     pub states: Vec<String>,
-    /// Real parameters at its top.
+    /// Real parameters at its top, or those of components where none is there.
     pub parameters: Vec<Estimable>,
 }
 
@@ -55,6 +55,16 @@ pub(super) struct Estimable {
     pub table: Option<(String, usize)>,
     /// What the model computes it from.
     pub computed: Option<String>,
+    /// Whether it is one of a component.
+    pub is_inside: bool,
+}
+
+/// Those at the top, if there are any.
+fn outermost(mut all: Vec<Estimable>) -> Vec<Estimable> {
+    if all.iter().any(|own| !own.is_inside) {
+        all.retain(|own| !own.is_inside);
+    }
+    all
 }
 
 impl Subject {
@@ -99,11 +109,11 @@ impl Subject {
     }
 }
 
-/// The Real parameters at the top of a model.
+/// The Real parameters of a model.
 fn parameters(model: &Translated, flat: &FlatModel) -> Vec<Estimable> {
     let all = model.program.parameters().iter();
-    let own = all.filter(|own| own.top_level && own.base == BaseType::Real);
-    own.map(|own| Estimable {
+    let own = all.filter(|own| own.base == BaseType::Real);
+    let all = own.map(|own| Estimable {
         name: own.name.to_string(),
         unit: own.unit.to_string(),
         description: own.description.to_string(),
@@ -114,8 +124,9 @@ fn parameters(model: &Translated, flat: &FlatModel) -> Vec<Estimable> {
             model.declarations.get(array).map(|own| own.dims.clone())
         }),
         computed: computed(model, flat, &own.name),
-    })
-    .collect()
+        is_inside: !own.top_level,
+    });
+    outermost(all.collect())
 }
 
 /// The array of which a parameter is an element, and its number of elements, where these are a table
@@ -159,20 +170,16 @@ fn of_unit(name: String, description: &Description, layout: &Layout) -> Subject 
         ..FlatModel::default()
     };
     let is_estimable = |scalar: &&Scalar| {
-        own(scalar).causality == Causality::Parameter
-            && own(scalar).kind.is_float()
-            && !scalar.name.contains('.')
+        own(scalar).causality == Causality::Parameter && own(scalar).kind.is_float()
     };
+    let estimable = |scalar: &Scalar| estimable(description, layout, scalar);
+    let parameters = all.iter().filter(is_estimable).map(estimable);
     Subject {
         name,
         is_unit: true,
         flat,
         states: all.iter().filter(is_state).map(|scalar| scalar.name.clone()).collect(),
-        parameters: all
-            .iter()
-            .filter(is_estimable)
-            .map(|scalar| estimable(description, layout, scalar))
-            .collect(),
+        parameters: outermost(parameters.collect()),
     }
 }
 
@@ -195,6 +202,7 @@ fn estimable(description: &Description, layout: &Layout, scalar: &Scalar) -> Est
         default: start(description, layout, scalar).unwrap_or(f64::NAN),
         table: array_of(&scalar.name, |_| description.sizes(variable, |_| None).ok()),
         computed: None,
+        is_inside: scalar.name.contains('.'),
     }
 }
 

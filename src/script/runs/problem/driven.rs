@@ -168,7 +168,11 @@ fn is_part_of(name: &str, variable: &str) -> bool {
 fn times(table: &MatFile, notes: &mut Notes) -> Result<(Vec<f64>, Option<Origin>), Fault> {
     let name = TIMES.into_iter().find(|name| table.column(name).is_ok()).unwrap_or(TIMES[0]);
     let entry = ColumnEntry::named(Some(name.to_owned()));
-    let column = data::column(table, &entry, name, notes)?;
+    let column = data::column(table, &entry, name, notes);
+    let column = column.map_err(|fault| match table.has_column(name) {
+        true => fault,
+        false => fault.help("give the column of the times the name `time`"),
+    })?;
     let origin = time_axis::origin(name, &column, (&entry, None), (table, notes))?;
     notes.about(table, time_axis::repeated(name, &column));
     Ok((time_axis::seconds(&column, &entry, origin, (table, notes))?, origin))
