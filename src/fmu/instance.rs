@@ -556,8 +556,10 @@ impl Instance {
         if !time.is_finite() {
             return Err("the time is not finite".into());
         }
-        self.state.time = time;
-        self.forget_values();
+        if self.state.time != time {
+            self.state.time = time;
+            self.forget_values();
+        }
         Ok(())
     }
 
@@ -575,10 +577,15 @@ impl Instance {
 
     pub(crate) fn set_states(&mut self, x: &[f64]) -> Result<(), Wrong> {
         self.check_number(x.len())?;
+        let State { x: before, .. } = &mut self.state;
+        let mut has_changed = false;
         for (value, state) in x.iter().zip(&self.model.content.states) {
-            self.state.x[*state] = *value;
+            has_changed |= before[*state] != *value;
+            before[*state] = *value;
         }
-        self.forget_values();
+        if has_changed {
+            self.forget_values();
+        }
         Ok(())
     }
 
@@ -636,9 +643,9 @@ impl Instance {
     /// The derivatives of the continuous states.
     pub(crate) fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Wrong> {
         self.check_number(out.len())?;
-        let model = self.model.clone();
-        let all = self.all_derivatives()?;
-        for (out, state) in out.iter_mut().zip(&model.content.states) {
+        self.all_derivatives()?;
+        let all = &self.state.derivatives.values;
+        for (out, state) in out.iter_mut().zip(&self.model.content.states) {
             *out = all[*state];
         }
         Ok(())

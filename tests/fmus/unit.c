@@ -3,6 +3,8 @@
      x' = -k x + u,  x(0) = x0;  at t = 1 x jumps by `jump`;  n counts how often x falls below `threshold`;
      y = (c[1] + ... + c[m]) x;  w = 2 u;  `fault` chooses what goes wrong after t = 0.5.
 
+   `repeats` counts calls for model exchange that set or ask for what was set or asked for before at the point.
+
    As FMI 2.0 it takes derivatives of u. Its parameter `other` starts with 7, whatever its description says.
 
    In scheduled execution a tick of `each` makes x (1 - k/10) x and adds 1 to n, one of `trigger` adds u to x
@@ -23,16 +25,17 @@
 #endif
 
 enum { X0 = 1, X = 2, DER_X = 3, K = 4, U = 5, Y = 6, JUMP = 7, THRESHOLD = 8, COUNT = 9, FAULT = 10,
-       SIZE = 11, C = 12, LABEL = 13, GAIN_ON = 14, W = 15, OTHER = 16, EACH = 21, TRIGGER = 22, WAIT = 23 };
+       SIZE = 11, C = 12, LABEL = 13, GAIN_ON = 14, W = 15, OTHER = 16, REPEATS = 17, EACH = 21, TRIGGER = 22, WAIT = 23 };
 enum { OK = 0, DISCARD = 2, ERROR = 3 };
 enum { CRASH = 1, HANG, REPORT, REFUSE, LEAVE, PRINT, NOT_A_NUMBER, WRITE, NO_OUTPUT, END, AWAY, STAY };
 
 typedef struct {
-    double t, x0, x, k, u, du, jump, threshold, other, last, c[4];
+    double t, stop, x0, x, k, u, du, jump, threshold, other, last, c[4];
     int32_t n, fault;
     uint64_t m;
     bool gain_on, jumped, below, is_begun, needs_event, waits;
-    int ticks;
+    bool has_time, has_state, has_derivatives, has_indicators;
+    int ticks, repeats;
     char label[64];
     void *environment, *logger;
 } Unit;
@@ -42,7 +45,7 @@ static void say(Unit *unit, int status, const char *text);
 static Unit *made(void) {
     Unit *unit = calloc(1, sizeof(Unit));
     unit->x0 = 1; unit->k = 1; unit->m = 2; unit->other = 7; unit->c[0] = 1; unit->c[1] = 0; unit->gain_on = true;
-    unit->threshold = -1e300;
+    unit->threshold = -1e300; unit->stop = 1e300;
     return unit;
 }
 
@@ -50,6 +53,18 @@ static double derivative(Unit *unit) {
     if (unit->fault == NOT_A_NUMBER && unit->t > 0.5) return NAN;
     return -unit->k * unit->x + unit->u;
 }
+
+/* The unit is at another point, or at none that the importer has set. */
+static void moved(Unit *unit) { unit->has_derivatives = unit->has_indicators = false; }
+static void set_time(Unit *unit, double t) {
+    unit->repeats += unit->has_time && unit->t == t;
+    unit->t = t; unit->has_time = true; moved(unit);
+}
+static void set_state(Unit *unit, double x) {
+    unit->repeats += unit->has_state && unit->x == x;
+    unit->x = x; unit->has_state = true; moved(unit);
+}
+static void asked(Unit *unit, bool *before) { unit->repeats += *before; *before = true; }
 
 static double output(Unit *unit) {
     double gain = 0;
@@ -80,6 +95,8 @@ static int update(Unit *unit) {
     bool below = unit->x < unit->threshold;
     if (below && !unit->below) unit->n++;
     unit->below = below;
+    unit->has_time = unit->has_state = false;
+    moved(unit);
     return OK;
 }
 
@@ -87,6 +104,7 @@ static int update(Unit *unit) {
 static int step(Unit *unit, double t, double h) {
     unit->t = t;
     double end = t + h;
+    if (end > unit->stop + 1e-9) { say(unit, ERROR, "the step leads beyond the stop time"); return ERROR; }
     while (unit->t < end - 1e-12 * fabs(end)) {
         double next = !unit->jumped && unit->t < 1 && end >= 1 ? 1 : end, d = next - unit->t;
         double slope = unit->k != 0 ? unit->du / unit->k : 0;
@@ -129,6 +147,7 @@ static int get_real(Unit *unit, unsigned reference, double *value) {
     case THRESHOLD: *value = unit->threshold; return OK;
     case W: *value = 2 * unit->u; return OK;
     case OTHER: *value = unit->other; return OK;
+    case REPEATS: *value = unit->repeats; return OK;
     default: return ERROR;
     }
 }
@@ -166,7 +185,7 @@ EXPORT void *fmi2Instantiate(const char *name, int kind, const char *guid, const
 }
 EXPORT void fmi2FreeInstance(void *unit) { free(unit); }
 EXPORT int fmi2SetupExperiment(void *c, int a, double b, double start, int d, double e) {
-    (void)a; (void)b; (void)d; (void)e; ((Unit *)c)->t = start; return OK;
+    (void)a; (void)b; ((Unit *)c)->t = start; if (d) ((Unit *)c)->stop = e; return OK;
 }
 EXPORT int fmi2EnterInitializationMode(void *c) { (void)c; return OK; }
 EXPORT int fmi2ExitInitializationMode(void *c) { return initialized(c); }
@@ -207,14 +226,16 @@ EXPORT int fmi2NewDiscreteStates(void *c, EventInfo *info) {
 }
 EXPORT int fmi2EnterContinuousTimeMode(void *c) { (void)c; return OK; }
 EXPORT int fmi2CompletedIntegratorStep(void *c, int last, int *event, int *ends) {
-    (void)c; (void)last; *event = 0; *ends = 0; return OK;
+    (void)last; *event = 0; *ends = 0; moved(c); return OK;
 }
-EXPORT int fmi2SetTime(void *c, double t) { ((Unit *)c)->t = t; return wrong(c); }
-EXPORT int fmi2SetContinuousStates(void *c, const double x[], size_t n) { (void)n; ((Unit *)c)->x = x[0]; return OK; }
+EXPORT int fmi2SetTime(void *c, double t) { set_time(c, t); return wrong(c); }
+EXPORT int fmi2SetContinuousStates(void *c, const double x[], size_t n) { (void)n; set_state(c, x[0]); return OK; }
 EXPORT int fmi2GetContinuousStates(void *c, double x[], size_t n) { (void)n; x[0] = ((Unit *)c)->x; return OK; }
-EXPORT int fmi2GetDerivatives(void *c, double d[], size_t n) { (void)n; d[0] = derivative(c); return OK; }
+EXPORT int fmi2GetDerivatives(void *c, double d[], size_t n) {
+    (void)n; asked(c, &((Unit *)c)->has_derivatives); d[0] = derivative(c); return OK;
+}
 EXPORT int fmi2GetEventIndicators(void *c, double z[], size_t n) {
-    (void)n; z[0] = ((Unit *)c)->x - ((Unit *)c)->threshold; return OK;
+    (void)n; asked(c, &((Unit *)c)->has_indicators); z[0] = ((Unit *)c)->x - ((Unit *)c)->threshold; return OK;
 }
 EXPORT int fmi2SetRealInputDerivatives(void *c, const unsigned r[], size_t n, const int order[], const double v[]) {
     for (size_t i = 0; i < n; i++) { if (r[i] != U || order[i] != 1) return ERROR; ((Unit *)c)->du = v[i]; }
@@ -259,7 +280,7 @@ EXPORT void *fmi3InstantiateCoSimulation(const char *name, const char *token, co
 }
 EXPORT void fmi3FreeInstance(void *c) { free(c); }
 EXPORT int fmi3EnterInitializationMode(void *c, bool a, double b, double start, bool d, double e) {
-    (void)a; (void)b; (void)d; (void)e; ((Unit *)c)->t = start; return OK;
+    (void)a; (void)b; ((Unit *)c)->t = start; if (d) ((Unit *)c)->stop = e; return OK;
 }
 EXPORT int fmi3ExitInitializationMode(void *c) { return initialized(c); }
 EXPORT int fmi3EnterConfigurationMode(void *c) { (void)c; return OK; }
@@ -318,14 +339,16 @@ EXPORT int fmi3UpdateDiscreteStates(void *c, bool *again, bool *ends, bool *nomi
 EXPORT int fmi3EnterContinuousTimeMode(void *c) { (void)c; return OK; }
 EXPORT int fmi3EnterStepMode(void *c) { (void)c; return OK; }
 EXPORT int fmi3CompletedIntegratorStep(void *c, bool last, bool *event, bool *ends) {
-    (void)last; *event = false; *ends = ends_now(c); return OK;
+    (void)last; *event = false; *ends = ends_now(c); moved(c); return OK;
 }
-EXPORT int fmi3SetTime(void *c, double t) { ((Unit *)c)->t = t; return wrong(c); }
-EXPORT int fmi3SetContinuousStates(void *c, const double x[], size_t n) { (void)n; ((Unit *)c)->x = x[0]; return OK; }
+EXPORT int fmi3SetTime(void *c, double t) { set_time(c, t); return wrong(c); }
+EXPORT int fmi3SetContinuousStates(void *c, const double x[], size_t n) { (void)n; set_state(c, x[0]); return OK; }
 EXPORT int fmi3GetContinuousStates(void *c, double x[], size_t n) { (void)n; x[0] = ((Unit *)c)->x; return OK; }
-EXPORT int fmi3GetContinuousStateDerivatives(void *c, double d[], size_t n) { (void)n; d[0] = derivative(c); return OK; }
+EXPORT int fmi3GetContinuousStateDerivatives(void *c, double d[], size_t n) {
+    (void)n; asked(c, &((Unit *)c)->has_derivatives); d[0] = derivative(c); return OK;
+}
 EXPORT int fmi3GetEventIndicators(void *c, double z[], size_t n) {
-    (void)n; z[0] = ((Unit *)c)->x - ((Unit *)c)->threshold; return OK;
+    (void)n; asked(c, &((Unit *)c)->has_indicators); z[0] = ((Unit *)c)->x - ((Unit *)c)->threshold; return OK;
 }
 EXPORT int fmi3GetNumberOfContinuousStates(void *c, size_t *n) { (void)c; *n = 1; return OK; }
 EXPORT int fmi3GetNumberOfEventIndicators(void *c, size_t *n) { (void)c; *n = 1; return OK; }

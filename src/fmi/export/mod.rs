@@ -24,6 +24,7 @@ use crate::lower::errors::NOT_SUPPORTED;
 use crate::{Archive, fault};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 pub(crate) use units::base;
 use variables::Table;
 
@@ -39,7 +40,7 @@ pub struct Kinds {
 /// A compiled model with what its variables are to others.
 pub struct Model<'p> {
     /// The program.
-    pub program: &'p Program,
+    pub program: &'p Arc<Program>,
     /// The class, with its modification.
     pub name: &'p str,
     /// Its name in the unit.

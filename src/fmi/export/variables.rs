@@ -11,6 +11,7 @@ use crate::diag::Fault;
 use crate::fault;
 use crate::flatten::{self, BaseType};
 use crate::lower::errors::NOT_SUPPORTED;
+use crate::sim::Residual as _;
 use std::collections::BTreeMap;
 
 /// All variables of a unit with what they stand for; a value reference is a place.
@@ -123,6 +124,8 @@ impl Table {
             None => part_of(model, info, kind),
         };
         let own = model.program.attributes(at);
+        let mut attributes = attributes(model, info, kind, &own);
+        attributes.nominal = rows.nominal_of(state).or(attributes.nominal);
         let variable = Variable {
             name: name.to_owned(),
             description: Some(info.description.to_string()).filter(|text| !text.is_empty()),
@@ -134,7 +137,7 @@ impl Table {
                 BaseType::Enumeration(definition) => Some(definition.name.to_string()),
                 _ => None,
             },
-            attributes: attributes(model, info, kind, &own),
+            attributes,
             start: start.map(|value| written(value, kind)).into_iter().collect(),
             is_reinitialized: state.is_some_and(|state| rows.is_own(state)),
             ..Variable::default()
@@ -220,6 +223,8 @@ struct Rows {
     by_name: BTreeMap<String, usize>,
     /// Whether each is an input.
     is_input: Vec<bool>,
+    /// Their nominal values, as integrators use them: those of the model, else the magnitudes of start values.
+    nominal: Vec<f64>,
 }
 
 impl Rows {
@@ -229,7 +234,9 @@ impl Rows {
         let names: Vec<String> =
             (0..n).filter_map(|at| Some(program.unknown_name(at)?.to_string())).collect();
         let by_name = names.iter().cloned().zip(0..).collect();
-        let mut rows = Rows { is_input: vec![false; n], names, by_name };
+        let mut nominal = vec![1.0; n];
+        program.system().nominal(&mut nominal);
+        let mut rows = Rows { is_input: vec![false; n], names, by_name, nominal };
         for (name, input) in &model.inputs {
             if let Input::State { .. } = input {
                 let (state, _) = rows.state_of_input(model, name)?;
@@ -241,6 +248,12 @@ impl Rows {
 
     fn is_own(&self, state: usize) -> bool {
         !self.is_input[state]
+    }
+
+    /// The nominal value of a state of the model, if it is not 1, which holds where nothing is said.
+    fn nominal_of(&self, state: Option<usize>) -> Option<f64> {
+        let state = state.filter(|state| self.is_own(*state))?;
+        Some(self.nominal[state]).filter(|nominal| *nominal != 1.0)
     }
 
     fn state(&self, name: &str) -> Option<usize> {

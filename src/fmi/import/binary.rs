@@ -58,7 +58,7 @@ impl Binary {
     /// # Errors
     /// Why the system does not load it, in its own words.
     pub fn load(path: &Path, version: Version, watch: Arc<CallWatch>) -> Result<Binary, String> {
-        watch.enter("dlopen");
+        watch.enter(watch.number_of("dlopen"));
         // SAFETY: loading runs code of the library, which the user has allowed.
         let library = unsafe { Library::new(path) }.map_err(|error| {
             let reason = std::error::Error::source(&error).map(ToString::to_string);
@@ -67,8 +67,8 @@ impl Binary {
         watch.leave();
         let library = library?;
         let functions = match version {
-            Version::V2 => Functions::V2(Box::new(Functions2::of(&library))),
-            Version::V3 => Functions::V3(Box::new(Functions3::of(&library))),
+            Version::V2 => Functions::V2(Box::new(Functions2::of(&library, &watch))),
+            Version::V3 => Functions::V3(Box::new(Functions3::of(&library, &watch))),
         };
         let (name, is_there) = match &functions {
             Functions::V2(f) => (f.version.name, f.version.pointer.is_some()),
@@ -111,7 +111,7 @@ impl Component {
             environment,
         });
         let function = maker(&binary.functions, kind);
-        binary.watch.enter(function);
+        binary.watch.enter(binary.watch.number_of(function));
         let made = match &binary.functions {
             Functions::V2(f) => instance_2(f, kind, identity, &callbacks),
             Functions::V3(f) => instance_3(f, kind, identity, environment),
@@ -150,12 +150,12 @@ impl Component {
 
 impl Drop for Component {
     fn drop(&mut self) {
-        let (name, free) = match &self.binary.functions {
-            Functions::V2(f) => (f.free_instance.name, f.free_instance.pointer),
-            Functions::V3(f) => (f.free_instance.name, f.free_instance.pointer),
+        let (number, free) = match &self.binary.functions {
+            Functions::V2(f) => (f.free_instance.number, f.free_instance.pointer),
+            Functions::V3(f) => (f.free_instance.number, f.free_instance.pointer),
         };
         if let Some(free) = free {
-            self.binary.watch.enter(name);
+            self.binary.watch.enter(number);
             // SAFETY: the instance lives, and nothing uses it afterwards.
             unsafe { free(self.handle) };
             self.binary.watch.leave();

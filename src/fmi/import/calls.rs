@@ -1,5 +1,6 @@
 //! Calls of a unit: which one is running, and how they fail.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// How a call failed.
@@ -68,38 +69,70 @@ impl std::fmt::Display for CallError {
     }
 }
 
-/// Which call is running, for a thread that looks for one that does not return.
+/// Which call is running, for a thread that looks for one that does not return. Calls are short: what each of
+/// them costs is one write at its begin and one at its end.
 #[derive(Debug, Default)]
-pub struct CallWatch(Mutex<Calls>);
-
-#[derive(Debug, Default)]
-struct Calls {
-    /// How many have begun.
-    count: u64,
-    /// The function that runs now.
-    running: Option<&'static str>,
+pub struct CallWatch {
+    /// The functions, by their numbers.
+    names: Mutex<Vec<&'static str>>,
+    /// How many calls have begun, times [`NAMES`], plus 1 and the number of the function that runs now; plus 0
+    /// where none runs.
+    calls: AtomicU64,
 }
 
+/// More than there are functions.
+const NAMES: u64 = 256;
+
 impl CallWatch {
-    fn calls(&self) -> MutexGuard<'_, Calls> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    fn names(&self) -> MutexGuard<'_, Vec<&'static str>> {
+        self.names.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A call of a function begins.
-    pub(super) fn enter(&self, function: &'static str) {
-        let mut calls = self.calls();
-        calls.count += 1;
-        calls.running = Some(function);
+    /// The number of a function.
+    pub(super) fn number_of(&self, function: &'static str) -> u64 {
+        let mut names = self.names();
+        let at = names.iter().position(|name| *name == function).unwrap_or_else(|| {
+            names.push(function);
+            names.len() - 1
+        });
+        (at as u64).min(NAMES - 2)
+    }
+
+    /// A call of the function of this number begins. One thread calls.
+    pub(super) fn enter(&self, function: u64) {
+        let count = self.calls.load(Ordering::Relaxed) / NAMES + 1;
+        self.calls.store(count * NAMES + 1 + function, Ordering::Relaxed);
     }
 
     /// It has returned.
     pub(super) fn leave(&self) {
-        self.calls().running = None;
+        let calls = self.calls.load(Ordering::Relaxed);
+        self.calls.store(calls - calls % NAMES, Ordering::Relaxed);
     }
 
     /// The number of the call that runs now, and its function.
     pub fn running(&self) -> Option<(u64, &'static str)> {
-        let calls = self.calls();
-        calls.running.map(|function| (calls.count, function))
+        let calls = self.calls.load(Ordering::Relaxed);
+        let function = (calls % NAMES).checked_sub(1)?;
+        Some((calls / NAMES, self.names().get(function as usize).copied()?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::CallWatch;
+
+    #[test]
+    fn the_call_that_runs_has_its_number_and_its_name() {
+        let watch = CallWatch::default();
+        let [one, other] = ["one", "other"].map(|name| watch.number_of(name));
+        assert_eq!(watch.number_of("one"), one);
+        assert_eq!(watch.running(), None);
+        watch.enter(other);
+        assert_eq!(watch.running(), Some((1, "other")));
+        watch.leave();
+        assert_eq!(watch.running(), None);
+        watch.enter(one);
+        assert_eq!(watch.running(), Some((2, "one")));
     }
 }

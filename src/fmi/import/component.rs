@@ -43,7 +43,7 @@ macro_rules! call {
         match function.pointer {
             None => Err(CallError { function: function.name, severity: Severity::Missing }),
             Some(pointer) => {
-                $self.watch().enter(function.name);
+                $self.watch().enter(function.number);
                 // SAFETY: the function has this type by the standard, the handle is that of a living
                 // instance, and pointers lead to as many values as are said beside them.
                 let status = unsafe { pointer($self.handle() $(, $argument)*) };

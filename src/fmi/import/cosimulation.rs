@@ -49,10 +49,23 @@ impl Points {
             },
             OutputGrid::Intervals(_) => Points { fixed: None, longest: f64::INFINITY },
             OutputGrid::At(_) => {
-                let step = step.unwrap_or((stop - start) / STEPS);
+                // Steps are whole numbers of those that the unit makes inside.
+                let usual = (stop - start) / STEPS;
+                let inside = interface.and_then(|own| own.fixed_internal_step);
+                let inside = inside.filter(|inside| *inside > 0.0);
+                let inside = inside.map(|inside| inside * (usual / inside).round().max(1.0));
+                let step = step.or(inside).unwrap_or(usual);
                 Points { fixed: (!is_variable).then_some(step), longest: step }
             }
         }
+    }
+
+    /// The end of the last step: steps of one length may lead beyond the stop time.
+    fn end(&self, start: f64, stop: f64) -> f64 {
+        let Some(length) = self.fixed.filter(|length| *length > 0.0) else { return stop };
+        let steps = ((stop - start) / length).floor();
+        let [whole, beyond] = [steps, steps + 1.0].map(|steps| start + steps * length);
+        if same_time(whole, stop) { whole.max(stop) } else { beyond.max(stop) }
     }
 }
 
@@ -72,7 +85,8 @@ impl<'a> CoSimulation<'a> {
     }
 
     fn begin(&mut self, out: &mut Trajectory) -> Result<bool, CallError> {
-        self.run.begin(out)?;
+        let Settings { start, stop, .. } = *self.run.settings;
+        self.run.begin(self.points.end(start, stop), out)?;
         // After the initialization a unit with event mode is in it.
         if self.has_event_mode {
             let update = self.run.component.update_discrete_states()?;

@@ -50,7 +50,65 @@ pub(super) struct ExchangeSystem<'a> {
     /// The last time at which a step or an event was completed.
     completed: f64,
     failure: Option<CallError>,
-    derivatives: [Vec<f64>; 2],
+    point: Point,
+    /// Derivatives beside the point for which a Jacobian is computed.
+    moved: Vec<f64>,
+}
+
+/// The point at which the unit is, and what it has computed there: integrators come back to a point, for the
+/// functions at its end, for a Jacobian, for an event.
+#[derive(Default)]
+struct Point {
+    /// NaN where the unit is not known to be anywhere, as after an event.
+    t: f64,
+    y: Vec<f64>,
+    derivatives: Known,
+    indicators: Known,
+}
+
+/// Values that are known or not.
+#[derive(Default)]
+struct Known {
+    values: Vec<f64>,
+    is_known: bool,
+}
+
+impl Point {
+    fn new(n: usize, indicators: usize) -> Point {
+        let unknown = |n: usize| Known { values: vec![0.0; n], is_known: false };
+        Point {
+            t: f64::NAN,
+            y: vec![f64::NAN; n],
+            derivatives: unknown(n),
+            indicators: unknown(indicators),
+        }
+    }
+
+    /// The unit is at another one.
+    fn moves(&mut self) {
+        (self.derivatives.is_known, self.indicators.is_known) = (false, false);
+    }
+
+    /// It is not known where the unit is.
+    fn forget(&mut self) {
+        self.moves();
+        self.t = f64::NAN;
+        self.y.fill(f64::NAN);
+    }
+}
+
+impl Known {
+    /// The values, computed unless they are known.
+    fn get(
+        &mut self,
+        compute: impl FnOnce(&mut [f64]) -> Result<(), CallError>,
+    ) -> Result<&[f64], CallError> {
+        if !self.is_known {
+            compute(&mut self.values)?;
+            self.is_known = true;
+        }
+        Ok(&self.values)
+    }
 }
 
 impl States {
@@ -133,7 +191,8 @@ impl<'a> ExchangeSystem<'a> {
             terminates: false,
             completed: f64::NEG_INFINITY,
             failure: None,
-            derivatives: [vec![0.0; n], vec![0.0; n]],
+            point: Point::new(n, indicators),
+            moved: vec![0.0; n],
         })
     }
 
@@ -145,6 +204,14 @@ impl<'a> ExchangeSystem<'a> {
     /// Why derivatives could not be carried on, if it was for these.
     pub fn refusal(&self) -> Option<&'static str> {
         self.refusal
+    }
+
+    /// The derivatives of the states, in the point.
+    fn derivatives(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.set(t, y)?;
+        let component = self.component;
+        let computed = self.point.derivatives.get(|out| component.derivatives(out)).map(|_| ());
+        self.done(computed)
     }
 
     /// Notes a failed call. After an error the instance must not be used any more.
@@ -164,14 +231,38 @@ impl<'a> ExchangeSystem<'a> {
             return Err(FAILED);
         }
         let y = &y[..self.n_differential()];
-        let set = self.component.set_time(t);
-        let set = set.and_then(|()| self.component.set_states(y));
-        let set = set.and_then(|()| self.inputs.set(self.component, t, false));
+        let set = self.set_changed(t, y);
+        if set.is_err() {
+            self.point.forget();
+        }
         self.done(set)
+    }
+
+    /// Sets what is not what it was.
+    fn set_changed(&mut self, t: f64, y: &[f64]) -> Result<(), CallError> {
+        let Point { t: before, y: states, .. } = &self.point;
+        let (is_other_time, is_other_state) = (*before != t, states != y);
+        if !is_other_time && !is_other_state {
+            return Ok(());
+        }
+        self.point.moves();
+        if is_other_time {
+            self.component.set_time(t)?;
+            self.point.t = t;
+        }
+        if is_other_state {
+            self.component.set_states(y)?;
+            self.point.y.copy_from_slice(y);
+        }
+        if is_other_time {
+            self.inputs.set(self.component, t, false)?;
+        }
+        Ok(())
     }
 
     /// The event iteration at an event or after the initialization.
     fn update(&mut self, y: &mut [f64]) -> Result<(), CallError> {
+        self.point.forget();
         let update = self.component.update_discrete_states()?;
         self.next_event = update.next_event;
         self.terminates |= update.terminates;
@@ -230,19 +321,23 @@ impl<'a> ExchangeSystem<'a> {
         Ok(())
     }
 
-    /// A column of the Jacobian by a difference; those of the unknowns are at hand.
-    fn difference(&mut self, column: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+    /// A column of the Jacobian by a difference from the derivatives at y.
+    fn difference(
+        &mut self,
+        column: usize,
+        (t, y): (f64, &mut [f64]),
+        base: &[f64],
+    ) -> Result<(), Failure> {
         let before = y[column];
         let magnitude = before.abs().max(self.states.nominal[column]);
         let moved = before + INCREMENT * magnitude;
         y[column] = moved;
-        self.set(t, y)?;
-        let [base, own] = &mut self.derivatives;
-        let computed = self.component.derivatives(own);
+        self.derivatives(t, y)?;
+        self.moved.copy_from_slice(&self.point.derivatives.values);
         let step = moved - before;
-        own.iter_mut().zip(base).for_each(|(own, base)| *own = (*own - *base) / step);
+        self.moved.iter_mut().zip(base).for_each(|(own, base)| *own = (*own - base) / step);
         y[column] = before;
-        self.done(computed)
+        Ok(())
     }
 }
 
@@ -260,10 +355,10 @@ impl Residual for ExchangeSystem<'_> {
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.set(t, y)?;
-        let n = self.n_differential();
-        let computed = self.component.derivatives(&mut out[..n]);
-        self.done(computed)
+        self.derivatives(t, y)?;
+        let known = &self.point.derivatives.values;
+        out[..known.len()].copy_from_slice(known);
+        Ok(())
     }
 
     fn pattern(&self) -> &Pattern {
@@ -292,14 +387,14 @@ impl Residual for ExchangeSystem<'_> {
             }
             return Ok(());
         }
-        let computed = self.component.derivatives(&mut self.derivatives[0]);
-        self.done(computed)?;
+        self.derivatives(t, y)?;
+        let base = self.point.derivatives.values.clone();
         let mut moved = y.to_vec();
         for column in 0..n {
-            self.difference(column, t, &mut moved)?;
+            self.difference(column, (t, &mut moved), &base)?;
             let pattern = &self.states.pattern;
             for entry in pattern.column(column) {
-                values[entry] = self.derivatives[1][pattern.rows[entry]];
+                values[entry] = self.moved[pattern.rows[entry]];
             }
         }
         Ok(())
@@ -317,6 +412,8 @@ impl Residual for ExchangeSystem<'_> {
         self.set(t, y)?;
         self.completed = t;
         let completed = self.component.completed_step();
+        // A unit may keep what it needs of the past.
+        self.point.moves();
         let [asks, terminates] = self.done(completed)?;
         self.terminates |= terminates;
         if asks || terminates {
@@ -391,7 +488,10 @@ impl Events for ExchangeSystem<'_> {
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         if self.indicators > 0 {
             self.set(t, y)?;
-            let computed = self.component.indicators(&mut out[..self.indicators]);
+            let component = self.component;
+            let indicators = &mut self.point.indicators;
+            let computed = indicators.get(|own| component.indicators(own));
+            let computed = computed.map(|own| out[..own.len()].copy_from_slice(own));
             self.done(computed)?;
         }
         if let Some(asked) = out.get_mut(self.indicators) {

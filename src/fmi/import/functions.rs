@@ -4,6 +4,7 @@
 
 #![allow(unsafe_code, reason = "functions of another language have no safe types")]
 
+use super::calls::CallWatch;
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_void};
 
@@ -18,6 +19,8 @@ pub(super) type Truth2 = c_int;
 #[derive(Clone, Copy)]
 pub(super) struct Function<F> {
     pub name: &'static str,
+    /// By which the watch of calls knows it.
+    pub number: u64,
     /// `None` where the library does not have it.
     pub pointer: Option<F>,
 }
@@ -33,12 +36,13 @@ macro_rules! table {
 
         impl $table {
             /// The functions that the library has.
-            pub fn of(library: &Library) -> $table {
+            pub fn of(library: &Library, watch: &CallWatch) -> $table {
                 // SAFETY: the standard gives these functions these types.
                 unsafe {
                     $table {
                         $($field: Function {
                             name: $symbol,
+                            number: watch.number_of($symbol),
                             pointer: library.get($symbol).ok().map(|symbol| *symbol),
                         },)*
                     }

@@ -115,7 +115,7 @@ impl<'a> Scheduled<'a> {
     /// Simulates; there are rows at the output points, and before and after ticks.
     pub fn simulate(&mut self, out: &mut Trajectory) -> Result<(), Stopped> {
         let Settings { start, stop, .. } = *self.run.settings;
-        self.run.begin(out)?;
+        self.run.begin(self.run.settings.stop, out)?;
         for clock in &mut self.clocks {
             clock.begin(self.run.component, start)?;
         }

@@ -52,9 +52,9 @@ impl<'a> Stepped<'a> {
         }
     }
 
-    /// Initializes the instance.
-    pub fn begin(&mut self, out: &mut Trajectory) -> Result<(), CallError> {
-        let Settings { start, stop, tolerance, .. } = *self.settings;
+    /// Initializes the instance, which is not advanced beyond `stop`.
+    pub fn begin(&mut self, stop: f64, out: &mut Trajectory) -> Result<(), CallError> {
+        let Settings { start, tolerance, .. } = *self.settings;
         out.reset(self.readings.count());
         self.component.enter_initialization(Some(tolerance), (start, stop))?;
         self.inputs.seek(start);

@@ -2,7 +2,7 @@
 //! variables along chosen states, and what it has come to, as numbers.
 
 use super::execution::{read, run};
-use super::instants::{Clock, Stage};
+use super::instants::Clock;
 use super::state::DelayState;
 use super::system::System;
 use crate::codegen::{Program, SensitivityCode};
@@ -60,9 +60,7 @@ impl System {
     /// # Errors
     /// Something has no value there.
     pub fn event_indicators(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
-        self.solve(Stage::Continuous)?;
-        self.agree_with_transported(t)?;
+        self.load_with_loops(t, y)?;
         let (first, others) = out.split_at_mut(self.program.n_crossings());
         let (last, transported) = others.split_at_mut(self.loops.choices.len());
         self.distances(first)?;
@@ -115,8 +113,7 @@ impl System {
         t: f64,
         x: &[f64],
     ) -> Result<DMatrix<f64>, Failure> {
-        self.load(t, x);
-        self.solve(Stage::Continuous)?;
+        self.load_with_loops(t, x)?;
         let (was_inside, n, p) = (self.loops.solves_loops, x.len(), variables.len());
         self.solve_loops(false);
         let m = self.n_algebraic();
@@ -266,6 +263,7 @@ impl System {
         if !fits {
             return false;
         }
+        self.loops.is_solved = false;
         self.registers.registers = registers;
         relations.switches = of_relations.switches;
         relations.is_at_start = of_relations.is_at_start;

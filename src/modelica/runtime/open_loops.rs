@@ -88,9 +88,10 @@ pub(super) fn return_from_leap(
     x: &mut [f64],
 ) -> bool {
     let n = x.len();
-    let scale: Vec<f64> = start.iter().zip(nominal).map(|(x, n)| x.abs().max(*n)).collect();
-    let mut moved = x.iter().zip(start).zip(&scale);
-    if n > MOST_UNKNOWNS || !moved.any(|((x, start), scale)| (x - start).abs() > LEAP * scale) {
+    let has_leapt = |((x, start), nominal): ((&f64, &f64), &f64)| {
+        (x - start).abs() > LEAP * start.abs().max(*nominal)
+    };
+    if n > MOST_UNKNOWNS || !x.iter().zip(start).zip(nominal).any(has_leapt) {
         return false;
     }
     let (mut near, mut residual) = (start.to_vec(), vec![0.0; n]);

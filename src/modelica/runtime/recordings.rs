@@ -25,6 +25,7 @@ impl System {
     /// a value that holds from the next event, or the start, until another one is given. It has one
     /// sample.
     pub fn set_recorded(&mut self, input: u32, value: f64) {
+        self.loops.is_solved = false;
         self.registers.registers[input as usize] = value;
         match self.events.given.iter_mut().find(|(known, _)| *known == input) {
             Some((_, known)) => *known = value,

@@ -96,6 +96,7 @@ impl System {
     }
 
     pub(super) fn load_mode(&mut self, mode: usize) {
+        self.loops.is_solved = false;
         let n = self.relations.modes.registers.len();
         let values = self.relations.modes.values.iter().skip(mode * n);
         for (register, value) in self.relations.modes.registers.iter().zip(values) {

@@ -104,6 +104,8 @@ pub(super) struct LoopState {
     pub(super) linear: Vec<(u32, Vec<VarId>)>,
     /// Whether the iteration variables are solved for in every evaluation.
     pub(super) solves_loops: bool,
+    /// Whether the registers hold the solution of all loops at the time and the states that they hold.
+    pub(super) is_solved: bool,
     /// That of the Jacobian of the states alone, where loops are solved inside: full.
     pub(super) full_pattern: OnceLock<Pattern>,
 }

@@ -150,6 +150,7 @@ impl System {
     /// Gives discrete variables, by their positions in [`Program::variables`], values that hold from the
     /// next event on. Those that follow from others are computed again there.
     pub fn set_discrete(&mut self, values: &[(usize, f64)]) {
+        self.loops.is_solved = false;
         for (variable, value) in values {
             let Some(info) = self.program.variables().get(*variable) else { continue };
             if self.program.events.discrete.contains(&info.variable) {
@@ -159,6 +160,7 @@ impl System {
     }
 
     pub(super) fn load(&mut self, t: f64, y: &[f64]) {
+        self.loops.is_solved = false;
         self.registers[0] = t;
         let registers = &mut self.registers[..];
         for (variable, value) in self.program.continuous.unknowns.iter().zip(y) {
@@ -180,12 +182,33 @@ impl System {
 
     /// Loads y, and solves for the iteration variables that it does not hold.
     fn load_solved(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        if self.has_inner_loops() {
+            return self.load_with_loops(t, y);
+        }
         self.load(t, y);
-        if !self.has_inner_loops() {
+        Ok(())
+    }
+
+    /// Loads y, and solves for all iteration variables, unless the registers hold the solution there: what is
+    /// asked at a point is asked one thing after the other.
+    pub(super) fn load_with_loops(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        if self.loops.is_solved && self.is_loaded(t, y) {
             return Ok(());
         }
+        self.load(t, y);
         self.solve(Stage::Continuous)?;
-        self.agree_with_transported(t)
+        self.agree_with_transported(t)?;
+        // What delays and pipes read at a point changes with what they record, derivatives with y.
+        self.loops.is_solved = !self.has_past() && self.sensitivity.is_none();
+        Ok(())
+    }
+
+    /// Whether the registers hold these bits.
+    fn is_loaded(&self, t: f64, y: &[f64]) -> bool {
+        let is_held =
+            |register: usize, value: f64| self.registers[register].to_bits() == value.to_bits();
+        let mut unknowns = self.program.continuous.unknowns.iter().zip(y);
+        is_held(0, t) && unknowns.all(|(variable, value)| is_held(variable.0 as usize, *value))
     }
 
     pub(super) fn unload(&self, y: &mut [f64]) {
@@ -347,6 +370,7 @@ impl System {
 
     /// Solves the blocks of a stage one after another.
     pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
+        self.loops.is_solved = false;
         let program = self.program.clone();
         let (steps, solvers) = match stage {
             Stage::Initial => (&program.initial_steps, &mut self.loops.initial_solvers),
@@ -383,6 +407,7 @@ impl System {
 
     /// Everything as it is before the initial system is solved.
     pub(super) fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
+        self.loops.is_solved = false;
         let program = self.program.clone();
         self.registers[0] = t;
         for variable in program.observed.iter().chain(&program.values.solved) {
@@ -485,7 +510,9 @@ impl Residual for System {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.relations.postponed.fill(false);
         self.relations.is_at_start = true;
-        self.solve_for_start(t, y)
+        let done = self.solve_for_start(t, y);
+        self.loops.is_solved = false;
+        done
     }
 
     fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
@@ -612,28 +639,9 @@ impl Events for System {
     }
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
-        if self.program.acts_by_recordings_alone() {
-            self.relations.is_at_start = false;
-            self.registers.calls.next_instant();
-            return Ok(EventOutcome::Continue { y_changed: self.advance_recordings(t) });
-        }
-        self.load(t, y);
-        self.relations.is_at_start = false;
-        self.registers.calls.next_instant();
-        self.relations.has_changed.fill(false);
-        self.relations.has_effect = false;
-        self.enter_event(t)?;
-        let mut outcome = self.event(t)?;
-        self.note_idle_relations();
-        if self.improve_choices()? {
-            outcome = either(outcome, EventOutcome::Continue { y_changed: true });
-        }
-        self.leave_event(outcome)?;
-        self.prefer_present_values();
-        self.note_open(t);
-        self.reschedule();
-        self.unload(y);
-        Ok(outcome)
+        let done = self.pass_event(t, y);
+        self.loops.is_solved = false;
+        done
     }
 
     fn keep_relations(&mut self, crossings: &[(usize, f64)]) {
@@ -660,6 +668,34 @@ impl Events for System {
 
     fn crossed(&mut self, crossing: Option<usize>, span: f64) {
         self.note_cause(crossing, span);
+    }
+}
+
+impl System {
+    /// Handles the event at (t, y).
+    fn pass_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        if self.program.acts_by_recordings_alone() {
+            self.relations.is_at_start = false;
+            self.registers.calls.next_instant();
+            return Ok(EventOutcome::Continue { y_changed: self.advance_recordings(t) });
+        }
+        self.load(t, y);
+        self.relations.is_at_start = false;
+        self.registers.calls.next_instant();
+        self.relations.has_changed.fill(false);
+        self.relations.has_effect = false;
+        self.enter_event(t)?;
+        let mut outcome = self.event(t)?;
+        self.note_idle_relations();
+        if self.improve_choices()? {
+            outcome = either(outcome, EventOutcome::Continue { y_changed: true });
+        }
+        self.leave_event(outcome)?;
+        self.prefer_present_values();
+        self.note_open(t);
+        self.reschedule();
+        self.unload(y);
+        Ok(outcome)
     }
 }
 

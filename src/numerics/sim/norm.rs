@@ -26,6 +26,10 @@ pub(crate) fn weighted_rms(x: &[f64], weights: &[f64]) -> f64 {
     if x.is_empty() {
         return 0.0;
     }
+    if x.len() < 4 {
+        let squares = x.iter().zip(weights).map(|(x, weight)| (x / weight) * (x / weight));
+        return (squares.sum::<f64>() / x.len() as f64).sqrt();
+    }
     // Four sums that do not wait for each other.
     let mut sums = [0.0; 4];
     let (x_fours, weight_fours) = (x.chunks_exact(4), weights.chunks_exact(4));

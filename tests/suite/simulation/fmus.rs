@@ -177,6 +177,28 @@ pub(super) fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }
 
+/// Integrators come back to a point: for indicators, for a Jacobian, for a row of the results. Nothing is set or
+/// asked for twice there, and the results are the exact ones.
+#[test]
+fn a_unit_is_asked_once_at_a_point() {
+    let repeats = |version: u8| match version {
+        2 => "<ScalarVariable name=\"repeats\" valueReference=\"17\"><Real/></ScalarVariable>",
+        _ => "<Float64 name=\"repeats\" valueReference=\"17\" variability=\"continuous\"/>",
+    };
+    for (version, method) in
+        [(3, "dassl"), (3, "radau"), (3, "dopri5"), (2, "dassl"), (2, "rodas4")]
+    {
+        let end = "</ModelVariables>";
+        let text = description(version).replace(end, &format!("{}{end}", repeats(version)));
+        let Some(here) = with_description(version, &text) else { return };
+        let set = ["--set", "jump=1", "--set", "threshold=0.5", "--method", method];
+        let all = simulated(&here, &set);
+        assert_eq!(column(&all, "repeats").last(), Some(&0.0), "{version} {method}");
+        let x = ((-1.0f64).exp() + 1.0) * (-1.0f64).exp();
+        near(*column(&all, "x").last().expect("rows"), x, 1e-6);
+    }
+}
+
 /// Both versions and kinds give the exact solution, with the jump at 1 s and what is set.
 #[test]
 fn units_of_both_versions_and_kinds_are_simulated() {
@@ -539,6 +561,31 @@ fn inputs_change_during_steps_of_co_simulation() {
             let exact = t - 0.5 + 1.5 * (-2.0 * t).exp();
             near(column(&all, "x")[row], exact, tolerance);
         }
+    }
+}
+
+/// Steps of one length that do not end at the last row of the data lead beyond it: the unit knows the end of the
+/// last one.
+#[test]
+fn fixed_steps_may_lead_beyond_the_data() {
+    for version in [2, 3] {
+        let fixed = description(version)
+            .replace("StepSize=\"true\"", "StepSize=\"false\"")
+            .replace("stepSize=\"0.1\"", "stepSize=\"0.3\"");
+        let Some(here) = with_description(version, &fixed) else { return };
+        let rows: String = (0..=20)
+            .map(|n| format!("{},{}\n", 0.1 * f64::from(n), (-0.1 * f64::from(n)).exp()))
+            .collect();
+        let problem = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n[[experiment]]\n\
+                       data = \"d.csv\"\noutputs = { y = \"y\" }\nintegrator = \"co-simulation\"\n";
+        fs::write(here.path().join("d.csv"), format!("time,y\n{rows}")).expect("written");
+        fs::write(here.path().join("p.toml"), problem).expect("written");
+        let identify = ["identify", "p.toml", "--allow-external", "--out", "o"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), 1.0, 0.02);
     }
 }
 

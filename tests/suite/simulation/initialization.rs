@@ -1,7 +1,10 @@
 //! Initial systems that are hard to solve, and loops inside the evaluation, from Modelica text.
 
 use crate::support::simulated::{Run, program, simulated_with};
-use gapilib::internals::sim::{Settings, find_integrator, simulate};
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{
+    EventOutcome, Events as _, Residual as _, Settings, find_integrator, simulate,
+};
 
 /// Its only root is 0; from 3 every step leads away from it.
 const AWAY: &str = "x/(1 + x^2)";
@@ -164,6 +167,47 @@ fn a_start_far_from_the_parameters_of_the_model_is_reached_from_theirs() {
     assert!(residual.abs() < 1e-8, "{residual:e} at {y}, {z}");
     assert!((y - z).abs() < 1e-8, "{y} {z}");
     assert_eq!(alone, solved(&[100.0, 0.1, 10.0]));
+}
+
+/// Importers of units and integrators ask for derivatives, crossings, indicators and results at one point; an
+/// event there, and a value that is set, need solutions of their own.
+#[test]
+fn loops_are_solved_once_at_a_point() {
+    let text = "model P Real x(start = 1, fixed = true); Real z(start = 1);
+        Boolean low(start = false, fixed = true);
+        equation z + z^3 = (if low then 20 else 2)*x; der(x) = -z;
+        when x < 0.5 then low = true; end when; end P;";
+    let mut system = program(text).system();
+    system.solve_loops(true);
+    let mut x = vec![0.0; system.n_differential()];
+    system.initialize(0.0, &mut x).unwrap();
+    let [crossings, indicators] = [system.n_crossings(), system.program().n_indicators()];
+    let observed = system.n_observed();
+    let everything = |system: &mut System, t: f64, x: &[f64]| {
+        let count = |system: &System| -> u64 {
+            system.loop_efforts().iter().map(|own| own.solutions).sum()
+        };
+        let (before, mut derivatives) = (count(system), [0.0]);
+        system.rhs(t, x, &mut derivatives).unwrap();
+        system.crossings(t, x, &mut vec![0.0; crossings]).unwrap();
+        system.event_indicators(t, x, &mut vec![0.0; indicators]).unwrap();
+        system.observe(t, x, &mut vec![0.0; observed]).unwrap();
+        (derivatives[0], count(system) - before)
+    };
+    let close = |(found, count): (f64, u64), z: f64| {
+        assert!((found + z).abs() < 1e-12 && count == 1, "{found} {z} {count}");
+    };
+    close(everything(&mut system, 0.0, &x), 1.0);
+    close(everything(&mut system, 1.0, &x), 1.0);
+    let kept = system.clone();
+    x[0] = 0.34;
+    // The real root of z + z^3 = 0.68, and that of z + z^3 = 6.8 (Brent's method).
+    close(everything(&mut system, 1.0, &x), 0.530_609_111_552_160_2);
+    while system.handle_event(1.0, &mut x).unwrap() == EventOutcome::Again {}
+    close(everything(&mut system, 1.0, &x), 1.719_144_140_974_806_5);
+    // A state that is restored has its own solution.
+    let mut system = kept;
+    close(everything(&mut system, 1.0, &[0.34]), 0.530_609_111_552_160_2);
 }
 
 #[test]

@@ -7,6 +7,14 @@
 
 use super::SingularMatrix;
 
+/// A pivot that can be divided by.
+fn usable(pivot: f64) -> Result<f64, SingularMatrix> {
+    match pivot == 0.0 || !pivot.is_finite() {
+        true => Err(SingularMatrix),
+        false => Ok(pivot),
+    }
+}
+
 /// A dense square matrix and its factors, P A = L U.
 #[derive(Debug, Clone)]
 pub struct DenseLu {
@@ -31,15 +39,31 @@ impl DenseLu {
 
     /// Replaces the matrix by its factors.
     pub fn factorize(&mut self) -> Result<(), SingularMatrix> {
+        // The loops of most models have one or two unknowns, and are solved in every evaluation.
+        match self.entries.as_mut_slice() {
+            [a] => return usable(*a).map(|_| ()),
+            [a, b, c, d] => {
+                let is_second = a.abs().total_cmp(&b.abs()).is_le();
+                if is_second {
+                    std::mem::swap(a, b);
+                    std::mem::swap(c, d);
+                }
+                self.pivots[0] = usize::from(is_second);
+                *b /= usable(*a)?;
+                if *c != 0.0 {
+                    *d -= *b * *c;
+                }
+                self.pivots[1] = 1;
+                return usable(*d).map(|_| ());
+            }
+            _ => {}
+        }
         let n = self.n;
         for k in 0..n {
             let column = &self.entries[k * n..(k + 1) * n];
             let pivot = (k..n).max_by(|a, b| column[*a].abs().total_cmp(&column[*b].abs()));
             let pivot = pivot.expect("k is less than n");
-            let value = column[pivot];
-            if value == 0.0 || !value.is_finite() {
-                return Err(SingularMatrix);
-            }
+            let value = usable(column[pivot])?;
             self.pivots[k] = pivot;
             self.eliminate(k, pivot, value);
         }
@@ -78,6 +102,20 @@ impl DenseLu {
 
     /// Replaces the right-hand side by the solution.
     pub fn solve(&self, b: &mut [f64]) {
+        match (self.entries.as_slice(), &mut *b) {
+            ([entry], [x]) => return *x /= entry,
+            ([u11, l21, u12, u22], [x, y]) => {
+                if self.pivots[0] == 1 {
+                    std::mem::swap(x, y);
+                }
+                *y -= l21 * *x;
+                *y /= u22;
+                *x -= u12 * *y;
+                *x /= u11;
+                return;
+            }
+            _ => {}
+        }
         let n = self.n;
         for (k, pivot) in self.pivots.iter().enumerate() {
             b.swap(k, *pivot);
