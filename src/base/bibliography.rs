@@ -375,6 +375,16 @@
 //! - **cranley-patterson-1976** — R. Cranley, T. N. L. Patterson: Randomization of number theoretic
 //!   methods for multiple integration. SIAM Journal on Numerical Analysis 13(6), 1976, 904–914.
 //!
+//! <a id="bartlett-1954"></a>
+//! - **bartlett-1954** — M. S. Bartlett: Problèmes de l'analyse spectrale des séries temporelles
+//!   stationnaires. Publications de l'Institut de Statistique de l'Université de Paris III-3, 1954,
+//!   119–134.
+//!
+//! <a id="self-liang-1987"></a>
+//! - **self-liang-1987** — S. G. Self, K.-Y. Liang: Asymptotic properties of maximum likelihood
+//!   estimators and likelihood ratio tests under nonstandard conditions. Journal of the American
+//!   Statistical Association 82, 1987, 605–610.
+//!
 //! <a id="jazwinski-1970"></a>
 //! - **jazwinski-1970** — A. H. Jazwinski: Stochastic Processes and Filtering Theory. Academic Press,
 //!   1970.

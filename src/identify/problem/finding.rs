@@ -67,6 +67,8 @@ pub enum FindingKind {
     Prior,
     /// Estimates at the limit of a constraint.
     Constraint,
+    /// What the process noise explains.
+    ProcessNoise,
     /// A statistic that could not be computed.
     Missing,
     /// Where the search of a script ended, and where least squares from there.

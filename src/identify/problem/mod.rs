@@ -27,6 +27,7 @@ mod grounds;
 mod held;
 mod importance;
 pub mod inference;
+mod innovations;
 mod jacobian;
 mod journal;
 mod limits;
@@ -77,6 +78,8 @@ pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
 pub use importance::{Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred};
+pub use innovations::NoiseComparison;
+pub(crate) use innovations::Periodogram;
 pub use journal::{
     Entry, Journal, Record, begin, decode, encode, header, is_of_another_version, without_times,
 };

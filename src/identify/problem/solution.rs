@@ -332,6 +332,9 @@ pub struct SolvedSeries {
     /// Whether the model computes sigma, which then is the root mean square.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) sigma_computed: bool,
+    /// The standard deviations of the points, where the model computes them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) deviations: Vec<f64>,
     /// Runs of the same sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub(crate) residual_test: Option<[f64; 4]>,
@@ -370,6 +373,7 @@ impl SolvedSeries {
             sigma: None,
             sigma_estimated: series.sigma.is_estimated(),
             sigma_computed: matches!(series.sigma, super::Sigma::Variable(_)),
+            deviations: Vec::new(),
             residual_test: test
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
             curve: Vec::new(),

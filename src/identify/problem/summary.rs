@@ -272,10 +272,11 @@ fn solved_series(
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
-        let square: f64 = statistics.weights[places]
-            .iter()
-            .map(|w| elementary::powi(measured.weight / w, 2))
-            .sum();
+        let deviations = || statistics.weights[places.clone()].iter().map(|w| measured.weight / w);
+        let square: f64 = deviations().map(|sigma| elementary::powi(sigma, 2)).sum();
+        if solved.sigma_computed {
+            solved.deviations = deviations().collect();
+        }
         solved.sigma = (measured.sigma != Sigma::Unknown)
             .then(|| (square / measured.x.len() as f64).sqrt())
             .filter(|sigma| sigma.is_finite());

@@ -6,7 +6,7 @@ use super::parts::{engineering, explained, number, one_panel, scrolling, series,
 use super::view::View;
 use crate::elementary;
 use crate::plot::{Axis, MANY, Mark};
-use crate::problem::{Finding, FindingKind, Solution, SolvedSeries};
+use crate::problem::{Finding, FindingKind, Periodogram, Solution, SolvedSeries};
 use maud::{Markup, html};
 
 /// Bars of a histogram.
@@ -36,13 +36,34 @@ pub fn section(view: &View) -> Option<Section> {
 /// thousands of dots hide both.
 fn distributions(solution: &Solution) -> Markup {
     let long = || solution.series.iter().filter(|own| own.points.len() > MANY);
+    let periodograms = || solution.series.iter().filter_map(periodogram);
     html! {
-        @if long().next().is_some() {
+        @if long().next().is_some() || periodograms().next().is_some() {
             div.figures.small {
                 @for own in long() { (histogram(own)) (correlogram(own)) }
+                @for drawn in periodograms() { (drawn) }
             }
         }
     }
+}
+
+/// The cumulated periodogram of residuals in their own standard deviations, with the band of white noise.
+fn periodogram(own: &SolvedSeries) -> Option<Markup> {
+    let found = Periodogram::of(&own.innovations())?;
+    let m = found.cumulated.len() as f64;
+    let at = |(k, share): (usize, &f64)| (0.5 * (k + 1) as f64 / m, *share);
+    let line: Vec<(f64, f64)> = found.cumulated.iter().enumerate().map(at).collect();
+    let band = found.band;
+    let limits =
+        [(0.0, band), (0.5, 1.0 + band), (f64::NAN, f64::NAN), (0.0, -band), (0.5, 1.0 - band)];
+    let all = vec![series("", &limits, Mark::Dashed, 2), series("", &line, Mark::Line, 1)];
+    let x = Axis::linear("cycles per sample", "");
+    let drawn = one_panel(x, Axis::linear("share of the power", ""), 150.0, all);
+    let label = format!("Cumulated periodogram of the innovations of {}", own.y[0]);
+    let caption = html! {
+        strong { (own.y[0]) } ": cumulated periodogram; that of white noise stays within its 95 % band."
+    };
+    Some(small_figure(&drawn, &label, &caption))
 }
 
 /// Residuals by ascending X, without those of failed simulations.

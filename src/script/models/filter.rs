@@ -60,6 +60,8 @@ pub(crate) struct Measured {
     pub values: Vec<f64>,
     /// The standard deviation of the errors.
     pub sigma: MeasuredSigma,
+    /// Whether it moves the states; else it is only predicted.
+    pub is_used: bool,
 }
 
 /// The standard deviation of measurement errors.
@@ -308,7 +310,7 @@ impl Filter<'_> {
                 held
             };
             self.follow(&channel("value", k), BaseType::Real, (&knots, of(&own.values)));
-            let ones = vec![1.0; own.times.len()];
+            let ones = vec![f64::from(own.is_used); own.times.len()];
             self.follow(&channel("presence", k), BaseType::Real, (&knots, of(&ones)));
             if let MeasuredSigma::Samples(sigma) = &own.sigma {
                 let mut sigma = of(sigma);
@@ -415,7 +417,7 @@ impl Filter<'_> {
         let at_start = own.times.first() == Some(&self.start);
         let first = |values: &[f64], other: f64| if at_start { values[0] } else { other };
         let value = previous(&channel("value", k), first(&own.values, 0.0));
-        let presence = previous(&channel("presence", k), f64::from(at_start));
+        let presence = previous(&channel("presence", k), f64::from(at_start && own.is_used));
         let sigma = match &own.sigma {
             MeasuredSigma::Expression(text) => format!("({text})"),
             MeasuredSigma::Samples(sigma) => previous(&channel("deviation", k), first(sigma, 1.0)),

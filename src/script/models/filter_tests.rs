@@ -31,9 +31,11 @@ fn samples() -> (Vec<Measured>, Vec<f64>) {
         times: first,
         values,
         sigma: MeasuredSigma::Expression("r".to_owned()),
+        is_used: true,
     };
     let sigma = MeasuredSigma::Samples(vec![0.4; second.len()]);
-    let other = Measured { name: "Tm".to_owned(), times: second, values: others, sigma };
+    let name = "Tm".to_owned();
+    let other = Measured { name, times: second, values: others, sigma, is_used: true };
     (vec![one, other], y)
 }
 

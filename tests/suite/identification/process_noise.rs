@@ -95,6 +95,14 @@ fn noise_and_errors_of_measurement_are_estimated_together() {
     let log = result["negative_log_likelihood"].as_f64().unwrap();
     assert!((log + 20.528069195977533).abs() < 1e-8, "{log}\n{text}");
     assert!(text.contains("1/sqrt(s)"), "{text}");
+    // SciPy's least -log L without noise of w is 119 larger.
+    for words in [
+        "The data need the process noise: without `noise of w`, -log L is larger by 119",
+        "The innovations of experiment 1 / T are white noise",
+        "experiment 1 / T: 0.936 (predictions: 0.19)",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
 }
 
 /// What the data say where nothing else does.

@@ -147,7 +147,8 @@ fn build_in(
     adjusted(file, &mut problem, &logarithmic).map_err(alone)?;
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
-    let doubts = Doubts { undecided, readings: misread::all(&file.experiment) };
+    let noise = (!file.noise.is_empty()).then(|| noise::estimated(file));
+    let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise };
     Ok(Built { problem, experiments, validation, origins, notes, calibration, doubts, unit })
 }
 

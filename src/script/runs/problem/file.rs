@@ -48,6 +48,9 @@ pub(super) struct ProblemFile {
     pub bootstrap: Option<BootstrapEntry>,
     /// Markov chains.
     pub posterior: Option<PosteriorEntry>,
+    /// What its process noise is compared with.
+    #[serde(skip)]
+    pub filtering: Filtering,
     /// Where its entries are written.
     #[serde(skip)]
     pub places: Places,
@@ -232,6 +235,18 @@ pub(super) enum DelayEntry {
 pub(super) enum SigmaEntry {
     Number(f64),
     Words(String),
+}
+
+/// What predictions are made with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Filtering {
+    /// Noise and measurements.
+    #[default]
+    Filtered,
+    /// Measurements and the noise that is given; what is estimated is 0.
+    WithoutNoise,
+    /// No measurements.
+    Simulated,
 }
 
 /// Process noise of a state: a number, `estimate`, or a table.

@@ -3,7 +3,7 @@
 
 use super::data::Notes;
 use super::enclosing_class::own_name;
-use super::file::{ColumnEntry, ExperimentEntry, ProblemFile};
+use super::file::{ColumnEntry, ExperimentEntry, Filtering, ProblemFile};
 use super::noise::{deviation, of_states};
 use crate::Session;
 use crate::codegen::Program;
@@ -43,6 +43,7 @@ pub(super) fn filtered(
             times: own.x.clone(),
             values: own.y.clone(),
             sigma: sigma(output, own),
+            is_used: file.filtering != Filtering::Simulated,
         })
         .collect();
     let start = experiment.settings.start;

@@ -4,6 +4,7 @@
 use super::file::{Column, ColumnEntry, ExperimentEntry, ProblemFile, SegmentsEntry};
 use super::inputs::Undecided;
 use super::interpolation;
+use super::noise_test;
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
@@ -39,6 +40,8 @@ pub(super) struct Doubts {
     pub undecided: Vec<Undecided>,
     /// Columns that may be read otherwise.
     pub readings: Vec<Changed>,
+    /// With process noise the densities that are estimated.
+    pub noise: Option<Vec<String>>,
 }
 
 impl Doubts {
@@ -54,6 +57,9 @@ impl Doubts {
         again: &mut Again<'_>,
     ) -> Result<(), Fault> {
         interpolation::try_others(session, (run, solution), &self.undecided, again)?;
+        if let Some(names) = &self.noise {
+            noise_test::compare(session, (run, solution), names, again)?;
+        }
         run.evaluation.show_by(session.world.status());
         let tried = try_readings(session, (run, solution), &self.readings, again);
         run.evaluation.show("");

@@ -35,6 +35,7 @@ mod live;
 mod matching;
 mod misread;
 mod noise;
+mod noise_test;
 pub(crate) mod operators;
 mod own_fitness;
 pub(crate) mod own_function;

@@ -3,7 +3,7 @@
 //! one row to the next.
 
 use super::enclosing_class::{EnclosingClass, own_name};
-use super::file::{ColumnEntry, ExperimentEntry, NoiseEntry, ProblemFile, SigmaEntry};
+use super::file::{ColumnEntry, ExperimentEntry, Filtering, NoiseEntry, ProblemFile, SigmaEntry};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::models::filter::Noise;
@@ -152,6 +152,12 @@ fn place(file: &ProblemFile, of: &Subject) -> Span {
     }
 }
 
+/// The names of the densities that are estimated.
+pub(super) fn estimated(file: &ProblemFile) -> Vec<String> {
+    let own = own_parameters(file).unwrap_or_default().into_iter();
+    own.filter(|own| matches!(own.of, Subject::State(_))).map(|own| own.name).collect()
+}
+
 /// Gives the parameters that noise adds their units, and ranges where the problem gives none.
 ///
 /// # Errors
@@ -254,6 +260,9 @@ pub(super) fn of_states(
         let unit = experiment.model.unit(state).unwrap_or_default();
         let usual = change(series, state, &unit).map_or(1.0, |(size, time)| size / time.sqrt());
         let (density, scale) = match own.density(state).at(file.places.at(&["noise", state]))? {
+            Density::Estimated { .. } if file.filtering == Filtering::WithoutNoise => {
+                ("0.0".to_owned(), 0.0)
+            }
             Density::Fixed(value) => (format!("{value:e}"), value),
             Density::Estimated { range, .. } => {
                 let scale = range.map_or(usual, |[min, max]| (min * max).abs().sqrt());
