@@ -80,6 +80,9 @@ pub(super) struct SimulateArgs {
     /// column `time` or `t`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub input: Option<PathBuf>,
+    /// Between the rows of --input, hold each value or interpolate linearly [default: as they look]
+    #[arg(long, value_name = "KIND", value_parser = ["hold", "linear"], requires = "input")]
+    pub interpolation: Option<String>,
     /// Start from the states and parameters at the end of these results, or at --start-time
     #[arg(long, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub from: Option<PathBuf>,
@@ -199,7 +202,9 @@ fn run(
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
     let mut options = SimulationOptions { only: filter, ..options(arguments) };
     let input = arguments.input.as_deref();
-    let driven = input.map(|path| problem::driven(session, class, path, None)).transpose()?;
+    let interpolation = arguments.interpolation.as_deref();
+    let driven = input.map(|path| problem::driven(session, class, path, interpolation));
+    let driven = driven.transpose()?;
     let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
     let model = simulation::translate(session, translated)?;
     options.takes_exact_steps = driven.is_some();

@@ -381,6 +381,9 @@ impl Instance {
     /// Messages of the model that were not passed on yet: whether each is a warning, and its text.
     pub(crate) fn new_messages(&mut self) -> Vec<(bool, String)> {
         let (messages, _) = self.state.system.log_messages();
+        if messages.len() == self.passed_on {
+            return Vec::new();
+        }
         let fresh = messages.iter().skip(self.passed_on);
         let fresh = fresh.map(|message| {
             (message.warning.is_some(), format!("t = {}: {}", message.time, message.text))

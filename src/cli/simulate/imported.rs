@@ -48,7 +48,9 @@ pub(super) fn run(
         given.add(&unit, name, value).map_err(one)?;
     }
     let inputs = arguments.input.as_deref();
-    let inputs = inputs.map(|path| problem::inputs_of(session, &unit, path)).transpose();
+    let interpolation = arguments.interpolation.as_deref();
+    let inputs = inputs.map(|path| problem::inputs_of(session, &unit, (path, interpolation)));
+    let inputs = inputs.transpose();
     let inputs = inputs.map_err(|error| vec![error])?;
     if let Some(inputs) = &inputs
         && unit.description.experiment.stop.is_none()

@@ -48,7 +48,7 @@ impl ImportedUnit {
 
     /// Lets its inputs follow the columns of a file.
     pub(super) fn follow(&mut self, session: &mut Session, file: &str) -> Result<(), Diagnostic> {
-        self.inputs = inputs_of(session, &self.unit, Path::new(file))?.samples;
+        self.inputs = inputs_of(session, &self.unit, (Path::new(file), Some("linear")))?.samples;
         Ok(())
     }
 

@@ -2,6 +2,7 @@
 
 use super::ranges::Range;
 use super::simulation::{MOST_STEPS, Simulated, SimulationOptions, Unfinished, settings};
+use super::typed::decimal_comma;
 use crate::Session;
 use crate::diag::{At, Fault, suggest};
 use crate::errors::{BAD_FMU, FMU_MESSAGE, INTERRUPTED};
@@ -215,7 +216,9 @@ impl Given {
                 fault!(BAD_FMU, "`{name}` of `{}` cannot be `{text}`", unit.file).help(
                     match variable.kind {
                         Kind::Boolean => "write `true` or `false`".to_owned(),
-                        _ if names.is_empty() => "write a number".to_owned(),
+                        _ if names.is_empty() => {
+                            decimal_comma(number).unwrap_or_else(|| "write a number".to_owned())
+                        }
                         _ => format!("its literals are {}", names.join(", ")),
                     },
                 )

@@ -82,14 +82,17 @@ pub(crate) fn number_in(name: &str, text: &str, base: Option<&BaseType>) -> Resu
         "true" => Ok(1.0),
         "false" => Ok(0.0),
         number => number.parse().map_err(|_| {
-            let point = number.replacen(',', ".", 1);
-            let help = match point.parse::<f64>() {
-                Ok(_) => format!("numbers have a decimal point: write `{point}`"),
-                Err(_) => "write a number, `true` or `false`".to_owned(),
-            };
+            let help = decimal_comma(number)
+                .unwrap_or_else(|| "write a number, `true` or `false`".to_owned());
             fault!(BAD_PARAMETER_VALUE, "`{text}` is not a value of `{name}`").help(help)
         }),
     }
+}
+
+/// What to write in place of a number with a decimal comma; `None` for another text.
+pub(super) fn decimal_comma(text: &str) -> Option<String> {
+    let point = text.replacen(',', ".", 1);
+    point.parse::<f64>().ok().map(|_| format!("numbers have a decimal point: write `{point}`"))
 }
 
 fn base_name(base: &BaseType) -> String {

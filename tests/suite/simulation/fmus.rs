@@ -378,6 +378,7 @@ fn arrays_and_all_types_are_set() {
         ("kk=1", "did you mean `k`?"),
         ("labl=a", "did you mean `label`?"),
         ("gain_on=perhaps", "cannot be `perhaps`"),
+        ("k=0,5", "numbers have a decimal point: write `0.5`"),
     ] {
         let (code, out, errors) = gapi(&here, &[&base[..], &["--set", set]].concat());
         assert!(code == 1 && errors.contains(said), "{set}: {out}{errors}");

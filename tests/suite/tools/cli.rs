@@ -215,6 +215,18 @@ end Tank;";
     let (code, _, errors) = run("e.csv");
     let is_named = errors.contains("`e.csv` has no column") && errors.contains("`u`, `open`");
     assert!(code == 1 && is_named, "{errors}");
+    fs::write(here.path().join("l.csv"), "t,u\n0,1\n1,2\n2,3\n").unwrap();
+    let (_, _, errors) = run("l.csv");
+    assert!(errors.contains("write `--interpolation hold`"), "{errors}");
+    // The input at 0.5 s.
+    let half = |kind: &str| {
+        let linear = ["simulate", "Tank.mo", "--input", "l.csv", "--interpolation", kind];
+        let (code, _, errors) = gapi(&here, &[&linear[..], &["--output", "y.csv"]].concat());
+        assert!(code == 0 && !errors.contains("--interpolation"), "{errors}");
+        let csv = fs::read_to_string(here.path().join("y.csv")).unwrap();
+        csv.lines().nth(126).unwrap().split(',').nth(1).unwrap().parse::<f64>().unwrap()
+    };
+    assert_eq!((half("linear"), half("hold")), (1.5, 1.0));
     fs::write(here.path().join("z.csv"), "Zeit,u\n0,1\n1,2\n").unwrap();
     let (code, _, errors) = run("z.csv");
     let remedy = "give the column of the times the name `time`";

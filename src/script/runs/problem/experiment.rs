@@ -324,8 +324,7 @@ impl Source<'_> {
         let (label, segment, free) = (self.label, self.segment, self.free);
         let setting = parameters::Setting { file, entry, label, segment, free, of_deviations: &[] };
         let formulas = deviation::formulas(entry, self.table);
-        let needed = (!formulas.is_empty(), setting.needs_types());
-        let plain = types_of(session, &file.model, needed)?;
+        let plain = types_of(session, &file.model, (!formulas.is_empty(), setting.needs_types()))?;
         let types = plain.as_ref().map(|own| &own.model);
         let of_deviations = match types.filter(|_| !formulas.is_empty()) {
             Some(flat) => deviation::declare(formulas, file, flat, &mut enclosing)

@@ -352,7 +352,7 @@ pub struct FollowedInputs {
 pub fn inputs_of(
     session: &mut Session,
     unit: &Imported,
-    path: &Path,
+    (path, interpolation): (&Path, Option<&str>),
 ) -> Result<FollowedInputs, Diagnostic> {
     let layout = unit.layout(&[]);
     let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
@@ -360,7 +360,7 @@ pub fn inputs_of(
     let names = input_names(unit, &layout);
     let is_real =
         |name: &str| layout.find(name).is_none_or(|place| unit.variable(place).kind.is_float());
-    let entry = columns.entry(&names, None, &is_real);
+    let entry = columns.entry(&names, interpolation, &is_real);
     let entry =
         entry.ok_or_else(|| no_column(&unit.file, &names, &columns.table).at(Span::NONE))?;
     let (table, notes) = (&columns.table, &mut columns.notes);

@@ -157,7 +157,9 @@ pub(super) fn recorded(
         let place = entry.places.at(&["inputs", name]);
         let input = (name.as_str(), &requested.entry());
         let declared = declared(name).at(place)?;
-        let followed = followed(input, table, times, &declared, notes).at(place)?;
+        let is_of_command = entry.data.as_os_str().is_empty();
+        let followed = followed((input, is_of_command), table, times, &declared, notes);
+        let followed = followed.at(place)?;
         notes.warn_about(table, outside(name, &followed, x.values));
         if !followed.is_decided {
             undecided.push(Undecided { name: name.clone(), assumed: followed.between });
@@ -280,9 +282,9 @@ fn own_times(
     time_axis::seconds(&column, &named, origin, (table, notes))
 }
 
-/// The samples of an input, and how it continues between them.
+/// The samples of an input, and how it continues between them; whether a command asks for it, not a problem.
 fn followed(
-    (name, requested): (&str, &ColumnEntry),
+    ((name, requested), is_of_command): ((&str, &ColumnEntry), bool),
     table: &MatFile,
     (time_name, time): (&str, &[f64]),
     Declared { base, unit, literals }: &Declared,
@@ -319,7 +321,7 @@ fn followed(
     }
     let samples: Vec<(f64, f64)> = rows.iter().map(|&row| (time[row], values[row])).collect();
     let (between, is_decided) = match base {
-        BaseType::Real => between(name, requested, &samples, notes)?,
+        BaseType::Real => between((name, requested), is_of_command, &samples, notes)?,
         _ if requested.interpolation.as_deref() == Some("linear") => bail!(
             BAD_OPTION,
             "the input `{name}` is not Real and cannot be interpolated linearly";
@@ -394,8 +396,8 @@ fn declare(
 /// What an entry says of the values between samples, or what the values look like; and whether
 /// nothing else can be meant.
 fn between(
-    name: &str,
-    entry: &ColumnEntry,
+    (name, entry): (&str, &ColumnEntry),
+    is_of_command: bool,
     samples: &[(f64, f64)],
     notes: &mut Notes,
 ) -> Result<(Between, bool), Fault> {
@@ -409,6 +411,10 @@ fn between(
         ),
         None => {}
     }
+    let choice = |other: &str| match is_of_command {
+        true => format!("`--interpolation {other}`"),
+        false => format!("`interpolation = \"{other}\"` in its entry of `inputs`"),
+    };
     let jumps = |pair: &[(f64, f64)]| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1;
     if samples.windows(2).all(|pair| pair[0].1 == pair[1].1 || jumps(pair)) {
         return Ok((Between::Constant, true));
@@ -416,8 +422,8 @@ fn between(
     if samples.windows(2).any(jumps) {
         notes.add(format!(
             "the input `{name}` jumps where two rows have one time stamp, and is interpolated \
-             linearly between other rows; if each value holds until the next, write \
-             `interpolation = \"hold\"` in its entry of `inputs`"
+             linearly between other rows; if each value holds until the next, write {}",
+            choice("hold")
         ));
         return Ok((Between::Linear, false));
     }
@@ -425,11 +431,13 @@ fn between(
     notes.add(match assumed {
         Between::Constant => format!(
             "the input `{name}` is piecewise constant: each value is held until the next sample; \
-             for linear interpolation write `interpolation = \"linear\"` in its entry of `inputs`"
+             for linear interpolation write {}",
+            choice("linear")
         ),
         Between::Linear => format!(
             "the input `{name}` is interpolated linearly between samples; if each value holds \
-             until the next, write `interpolation = \"hold\"` in its entry of `inputs`"
+             until the next, write {}",
+            choice("hold")
         ),
     });
     Ok((assumed, false))
