@@ -147,6 +147,9 @@ pub trait Instance: Send {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError>;
+    /// From now on variables that nothing else depends on may be NaN where they have no value: the caller
+    /// looks at each.
+    fn allow_missing_values(&mut self) {}
     /// Whether it has no states, so that nothing is integrated.
     fn is_static(&mut self) -> bool;
     /// The system that is simulated, where it is one of this process.

@@ -202,6 +202,10 @@ impl Instance for CompiledInstance {
         simulator.run(&mut self.system, settings, out)
     }
 
+    fn allow_missing_values(&mut self) {
+        self.system.allow_missing_values();
+    }
+
     fn is_static(&mut self) -> bool {
         self.system.n_differential() == 0
     }

@@ -119,7 +119,8 @@ impl ModelSimulator {
     ///
     /// Variables and parameters that the model does not have, points that cannot be reached.
     pub fn new(experiments: &[Experiment]) -> Result<ModelSimulator, Fault> {
-        let stages = experiments.iter().map(Stage::new).collect::<Result<_, Fault>>()?;
+        let mut stages = experiments.iter().map(Stage::new).collect::<Result<Vec<_>, Fault>>()?;
+        stages.iter_mut().for_each(|stage| stage.instance.allow_missing_values());
         Ok(ModelSimulator {
             experiments: experiments.to_vec(),
             stages,

@@ -17,7 +17,7 @@ impl System {
     /// Observes what can be observed where variables that nothing reads have no value.
     ///
     /// # Errors
-    /// The failure, if it is another one, or if no log takes the warning.
+    /// The failure, if it is another one, or if neither a log takes the warning nor values may be missing.
     pub(super) fn observe_others(
         &mut self,
         t: f64,
@@ -47,6 +47,12 @@ impl System {
         }
     }
 
+    /// From now on values of variables that nothing reads may be missing where their divisions have none:
+    /// the caller finds NaN there and refuses what it needs.
+    pub fn allow_missing_values(&mut self) {
+        self.outputs.others.may_lack = true;
+    }
+
     /// A simulation begins: the code stays.
     pub(super) fn forget_warnings_of_others(&mut self) {
         self.outputs.others.warned.clear();
@@ -55,17 +61,20 @@ impl System {
     /// The variable whose value has failed; warns of it once.
     fn without_value(&mut self, t: f64, failure: Failure) -> Result<VarId, Failure> {
         let program = self.program.clone();
-        let (Failure::Domain { origin, operation: Operation::DIVISION }, Some(log)) =
-            (failure, &mut self.messages.log)
-        else {
+        let Failure::Domain { origin, operation: Operation::DIVISION } = failure else {
             return Err(failure);
         };
+        if self.messages.log.is_none() && !self.outputs.others.may_lack {
+            return Err(failure);
+        }
         let variable = program.variable_of(origin);
         let Some(variable) = variable.filter(|v| program.unread.variables.binary_search(v).is_ok())
         else {
             return Err(failure);
         };
-        if !self.outputs.others.warned.contains(&variable) {
+        if let Some(log) = &mut self.messages.log
+            && !self.outputs.others.warned.contains(&variable)
+        {
             self.outputs.others.warned.push(variable);
             let value = program.failed_value(origin, Operation::DIVISION, "here");
             let text = format!("{value}; the simulation continues, as nothing depends on it");

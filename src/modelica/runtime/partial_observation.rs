@@ -11,6 +11,8 @@ pub(super) struct OtherVariables {
     /// Variables that have had no value, of which a warning says so.
     pub(super) warned: Vec<VarId>,
     pub(super) known: Vec<Others>,
+    /// Whether such values may be missing without a warning, as the caller looks at each value.
+    pub(super) may_lack: bool,
 }
 
 /// The variables that do not depend on some.

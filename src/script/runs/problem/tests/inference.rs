@@ -446,3 +446,25 @@ fn sigma_is_a_formula_with_estimated_parameters() {
         assert!((high / 0.0593620 - 1.0).abs() < 1e-3, "{high}\n{text}");
     }
 }
+
+/// A share is 0/0 where the other output alone is measured; where it is measured itself, the place of the
+/// division is named.
+#[test]
+fn values_that_are_not_compared_may_be_missing() {
+    let model = "model M\n  parameter Real k = 1;\n  Real a(start = 0, fixed = true);\n  \
+                 Real b(start = 0, fixed = true);\n  Real share = a/(a + b);\nequation\n  \
+                 der(a) = k;\n  der(b) = 1;\nend M;\n";
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+                   k = { min = 0.1, max = 9 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                   outputs = { a = \"a\", share = \"share\" }\n";
+    let files = |first: &str| {
+        let data = format!("time,a,share\n0,0.1,{first}\n1,2.9,0.75\n2,6.1,0.75\n");
+        [("p.toml", problem.to_owned()), ("M.mo", model.to_owned()), ("d.csv", data)]
+    };
+    let solution = solved(&files(""));
+    assert!((value(&solution, "k") - 3.0).abs() < 0.1, "{}", solution.text());
+    let mut session = Session::new(Box::new(world(&files("0.5"))));
+    let errors = solve(&mut session, Path::new("p.toml"), &RunOptions::default()).unwrap_err();
+    let said = format!("{errors:?}");
+    assert!(said.contains("a division by zero"), "{said}");
+}
