@@ -153,6 +153,9 @@
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
 //!   learning. Addison-Wesley, 1989.
 //!
+//! <a id="isidori-1995"></a>
+//! - **isidori-1995** — A. Isidori: Nonlinear control systems, 3rd edition. Springer, 1995.
+//!
 //! <a id="walter-pronzato-1997"></a>
 //! - **walter-pronzato-1997** — É. Walter, L. Pronzato: Identification of parametric models from
 //!   experimental data. Springer, 1997.

@@ -14,6 +14,7 @@ use super::identify::IdentifyArgs;
 use super::import::ImportArgs;
 use super::journal::JournalArgs;
 use super::lesson::LessonArgs;
+use super::linearize::LinearizeArgs;
 use super::man::ManArgs;
 use super::new::NewArgs;
 use super::options::Global;
@@ -79,6 +80,8 @@ pub(super) enum Command {
     Help(HelpArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
+    /// Show poles, zeros and frequency responses of a model at a point of its simulation
+    Linearize(LinearizeArgs),
     /// Export a model as a functional mock-up unit (FMU)
     ExportFmu(ExportFmuArgs),
     /// Check every class of Modelica files, and models including their causalization (BLT)

@@ -43,6 +43,7 @@ mod journal;
 mod launcher;
 mod lesson;
 mod limits;
+mod linearize;
 mod live;
 mod lock;
 #[cfg(feature = "lsp")]
@@ -160,6 +161,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Run(_)
             | Command::Identify(_)
             | Command::Simulate(_)
+            | Command::Linearize(_)
             | Command::ExportFmu(_)
             | Command::Check(_)
             | Command::Flatten(_)
@@ -167,8 +169,8 @@ fn dispatch(cli: &Cli) -> ExitCode {
     );
     if cli.global.show_permissions && !lists {
         terminal::eprint(
-            "error: `--show-permissions` lists what `run`, `identify`, `simulate`, `export-fmu`, `check`, \
-             `flatten` and `repl` permit\n",
+            "error: `--show-permissions` lists what `run`, `identify`, `simulate`, `linearize`, `export-fmu`, \
+             `check`, `flatten` and `repl` permit\n",
         );
         return ExitCode::from(2);
     }
@@ -193,6 +195,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Completions(arguments) => completions::completions(arguments, Cli::command()),
         Command::Man(arguments) => man::man(arguments, Cli::command()),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
+        Command::Linearize(arguments) => linearize::linearize(arguments, &cli.global),
         Command::ExportFmu(arguments) => export_fmu::export_fmu(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
         Command::Fmt(arguments) => fmt::fmt(arguments),

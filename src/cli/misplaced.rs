@@ -80,6 +80,9 @@ pub(super) fn refusal(command: &Command) -> Option<String> {
         Command::Simulate(arguments) => {
             arguments.files.iter().find_map(|path| other_kind(path, FileKind::Model))
         }
+        Command::Linearize(arguments) => {
+            arguments.files.iter().find_map(|path| other_kind(path, FileKind::Model))
+        }
         Command::Flatten(arguments) => {
             arguments.files.iter().find_map(|path| other_kind(path, FileKind::Model))
         }

@@ -1,7 +1,7 @@
 //! The numbers of gapilib, without Modelica:
 //!
 //! - [`sim`]: integrators, events, trajectories;
-//! - [`frequency`]: the response of linear systems to oscillations;
+//! - [`frequency`]: the response of linear systems to oscillations, their poles and zeros;
 //! - [`ga`]: the genetic algorithm and other optimizers;
 //! - [`kramers_kronig`]: whether a spectrum can be that of a linear system;
 //! - [`mat`], [`results`]: tables of numbers and results of simulations, in files.

@@ -5,6 +5,7 @@
 //! keep labels apart. Colours are the palette of Okabe and Ito, which readers with any kind of
 //! colour vision can tell apart; series also differ in weight and marks.
 
+mod bode;
 mod chart;
 mod coordinate;
 mod draw;
@@ -18,6 +19,7 @@ mod ready;
 mod svg;
 mod ticks;
 
+pub use bode::{Responding, bode};
 pub use draw::{power, prefixed, shown_unit};
 pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
 pub use matrix::Matrix;

@@ -220,7 +220,7 @@ fn each_linearized(
             true => for_this_call(session, |session| {
                 let set = others.into_iter().map(|(_, (name, value))| (name, *value));
                 set.into_iter().try_for_each(|(name, value)| session.set_parameter(name, value))?;
-                let linear = linearized(session, &options);
+                let linear = linearized(session, &options, &[]);
                 Ok::<_, Fault>(session.or_report_all(linear))
             })?,
             false => None,

@@ -7,8 +7,8 @@ use super::simulation::{Request, is_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::flatten::Experiment;
-use crate::mat::{self, Matrix};
-use crate::models::linearization::{Linear, linearized};
+use crate::models::linear::Linear;
+use crate::models::linearization::linearized;
 use crate::models::simulation;
 use crate::models::simulation::SimulationOptions;
 use crate::name::Name;
@@ -53,7 +53,7 @@ fn linearize_model(session: &mut Session, mut args: Args) -> Result<Value, Failu
         return Ok(false.into());
     }
     request.options.stop = request.options.stop.or(request.options.start).or(Some(0.0));
-    let linear = linearized(session, &request.options);
+    let linear = linearized(session, &request.options, &[]);
     let Some(linear) = session.or_report_all(linear) else { return Ok(false.into()) };
     let written = write_dslin(session, &linear_file(&request.file), &linear);
     Ok(session.succeeded(written))
@@ -64,27 +64,9 @@ pub(super) fn linear_file(name: &str) -> String {
     if name.ends_with(".mat") { name.to_owned() } else { format!("{name}.mat") }
 }
 
-/// The matrices of Dymola's layout: `ABCD` = [A, B; C, D], `nx` and the names of x, u and y.
+/// Writes the matrices of a linear model.
 pub(super) fn write_dslin(session: &mut Session, file: &str, linear: &Linear) -> Result<(), Fault> {
-    let [x, u, y] = &linear.names;
-    let whole = |i: usize, j: usize| match (i.checked_sub(x.len()), j.checked_sub(x.len())) {
-        (None, None) => linear.a[(i, j)],
-        (None, Some(j)) => linear.b[(i, j)],
-        (Some(i), None) => linear.c[(i, j)],
-        (Some(i), Some(j)) => linear.d[(i, j)],
-    };
-    let (rows, columns) = (x.len() + y.len(), x.len() + u.len());
-    let elements = (0..columns).flat_map(|j| (0..rows).map(move |i| whole(i, j))).collect();
-    let names: Vec<&String> = linear.names.iter().flatten().collect();
-    let class = ["AlinearSystem", "1.0", "Linear time invariant system", ""];
-    let matrices = [
-        ("Aclass", Matrix::from_text(&class)),
-        ("ABCD", Matrix::from_columns(rows, columns, elements)),
-        ("nx", Matrix::from_rows(&[vec![x.len() as f64]])),
-        ("xuyName", Matrix::from_text(&names)),
-    ];
-    let bytes = mat::write_v4(matrices.iter().map(|(name, matrix)| (*name, matrix)))?;
-    session.write_result_file(Path::new(file), &bytes)
+    session.write_result_file(Path::new(file), &linear.to_mat()?)
 }
 
 const LINEARIZE: &str = r#"
@@ -150,7 +132,7 @@ fn translated_and_linearized(
     let options = with_method_of_ours(session, options);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
-    let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &options));
+    let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &options, &[]));
     session.restore_values(before);
     let linear = linear?;
     let text = as_model(&linear, class);

@@ -10,6 +10,7 @@
 //! columns of x and u are found in the same way. The derivative of each is a state too: where
 //! something depends on it, the model is no system of this form and is refused.
 
+use super::linear::Linear;
 use super::simulation::{self, SimulationOptions, Translated};
 use crate::Session;
 use crate::causalize;
@@ -28,32 +29,19 @@ use crate::syntax::ast::{
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// A model ẋ = A x + B u, y = C x + D u of deviations.
-pub(crate) struct Linear {
-    /// Names of the states x, the inputs u and the outputs y.
-    pub(crate) names: [Vec<String>; 3],
-    /// States and inputs at the point of linearization.
-    pub(crate) x0: Vec<f64>,
-    /// Inputs there.
-    pub(crate) u0: Vec<f64>,
-    pub(crate) a: DMatrix<f64>,
-    pub(crate) b: DMatrix<f64>,
-    pub(crate) c: DMatrix<f64>,
-    pub(crate) d: DMatrix<f64>,
-    /// The simulation before.
-    pub(crate) results: ResultTable,
-}
-
-/// Simulates the model translated last and linearizes it where the simulation ends.
+/// Simulates the model translated last and linearizes it where the simulation ends. `outputs`: names of
+/// variables; empty for the outputs of the model itself.
 ///
 /// # Errors
-/// A simulation that fails, a singular loop, an output that depends on the derivative of an input.
-pub(crate) fn linearized(
+/// A simulation that fails, a singular loop, an output that depends on the derivative of an input, names
+/// that the model does not have.
+pub fn linearized(
     session: &mut Session,
     options: &SimulationOptions,
+    outputs: &[String],
 ) -> Result<Linear, Vec<Diagnostic>> {
     let before = session.current_values();
-    let linear = linearized_variant(session, options);
+    let linear = linearized_variant(session, options, outputs);
     session.restore_values(before);
     linear
 }
@@ -61,6 +49,7 @@ pub(crate) fn linearized(
 fn linearized_variant(
     session: &mut Session,
     options: &SimulationOptions,
+    outputs: &[String],
 ) -> Result<Linear, Vec<Diagnostic>> {
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
@@ -76,7 +65,13 @@ fn linearized_variant(
     let y0 = y0.at(at).map_err(one)?;
     let system = session.system_with_values(&model).map_err(one)?;
     let places = Places::of(&model, &inputs).at(at).map_err(one)?;
-    let outputs = outputs_of(&model.program);
+    let outputs = match outputs {
+        [] => outputs_of(&model.program),
+        names => {
+            let place = |name: &String| model.program.find_variable(name);
+            names.iter().map(place).collect::<Result<_, _>>().at(at).map_err(one)?
+        }
+    };
     let slopes = reduced(system, time, &y0, &outputs)
         .map_err(|_| {
             Fault::new(
@@ -328,6 +323,7 @@ mod tests {
         linearized(
             &mut session,
             &SimulationOptions { stop: Some(0.0), ..SimulationOptions::default() },
+            &[],
         )
     }
 

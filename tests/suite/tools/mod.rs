@@ -13,6 +13,7 @@ mod hangup;
 mod imports;
 mod lessons;
 mod limits;
+mod linear;
 mod lsp;
 mod mat;
 mod page;

@@ -9,6 +9,10 @@
 //! to Hessenberg form once, after which a frequency costs n² operations (Laub, 1981). One step of
 //! iterative refinement with the entries as they are given makes up for what the reduction rounds.
 
+mod poles_zeros;
+
+pub use poles_zeros::{poles, zeros};
+
 use nalgebra::linalg::{Hessenberg, balancing};
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
