@@ -9,9 +9,10 @@ use crate::plot::{self, Picture, Responding};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
+use crate::script::models::exported::translate;
 use crate::script::models::linear::{Linear, Number};
 use crate::script::models::linearization::linearized;
-use crate::script::models::simulation::{self, SimulationOptions};
+use crate::script::models::simulation::SimulationOptions;
 use crate::source::Span;
 use crate::{elementary, fault};
 use clap::{Args, ValueHint};
@@ -113,7 +114,7 @@ fn run(
 ) -> Result<(), Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let picture = arguments.bode.as_deref().map(Picture::of).transpose().map_err(one)?;
-    simulation::translate(session, class)?;
+    translate(session, class)?;
     for (name, value) in &arguments.set {
         session.set_parameter_text(name, value).map_err(one)?;
     }

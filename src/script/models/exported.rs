@@ -63,7 +63,7 @@ struct MadeInput {
     default: f64,
 }
 
-/// Translates a model whose inputs an importer gives values.
+/// Translates a model whose inputs an importer gives values, or deviations.
 ///
 /// # Errors
 /// What is wrong with the model.

@@ -78,7 +78,7 @@ impl Rewrite for Renamed<'_> {
 }
 
 /// Declares the deviations in the class around the model, and parameters that only they have; returns
-/// the names of these.
+/// the names of these. `types`: the model, which is needed where there are formulas.
 ///
 /// # Errors
 ///
@@ -86,9 +86,10 @@ impl Rewrite for Renamed<'_> {
 pub(super) fn declare(
     formulas: Vec<Formula>,
     file: &ProblemFile,
-    flat: &FlatModel,
+    types: Option<&FlatModel>,
     enclosing: &mut EnclosingClass,
 ) -> Result<Vec<String>, Diagnostic> {
+    let Some(flat) = types.filter(|_| !formulas.is_empty()) else { return Ok(Vec::new()) };
     let of_model = |name: &str| {
         let base = name.split('[').next().unwrap_or(name);
         flat.variables.contains_key(name)

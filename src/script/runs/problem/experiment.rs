@@ -326,11 +326,8 @@ impl Source<'_> {
         let formulas = deviation::formulas(entry, self.table);
         let plain = types_of(session, &file.model, (!formulas.is_empty(), setting.needs_types()))?;
         let types = plain.as_ref().map(|own| &own.model);
-        let of_deviations = match types.filter(|_| !formulas.is_empty()) {
-            Some(flat) => deviation::declare(formulas, file, flat, &mut enclosing)
-                .map_err(|error| vec![error])?,
-            None => Vec::new(),
-        };
+        let of_deviations = deviation::declare(formulas, file, types, &mut enclosing)
+            .map_err(|error| vec![error])?;
         let setting = parameters::Setting { of_deviations: &of_deviations, ..setting };
         let parameters = setting.parameters(types, &mut enclosing).map_err(|error| vec![error])?;
         note_used_twice(entry, notes);
