@@ -5,6 +5,7 @@ use super::compare::CompareArgs;
 use super::completions::CompletionsArgs;
 #[cfg(feature = "lsp")]
 use super::connection::LspArgs;
+use super::estimate::EstimateArgs;
 use super::explain::ExplainArgs;
 use super::export_fmu::ExportFmuArgs;
 use super::fmt::FmtArgs;
@@ -68,6 +69,8 @@ pub(super) enum Command {
     Lesson(LessonArgs),
     /// Estimate the parameters of a problem file
     Identify(IdentifyArgs),
+    /// Estimate the states of a model with process noise from measurements
+    Estimate(EstimateArgs),
     /// Draft a problem file from a data file and a model
     New(NewArgs),
     /// Import a model in SBML or a problem in PEtab

@@ -30,6 +30,7 @@ mod device;
 mod disk;
 mod effort;
 pub mod embedding;
+mod estimate;
 mod explain;
 mod export_fmu;
 mod fitted;
@@ -149,6 +150,7 @@ fn default_limits(command: &Command) -> Result<Option<limits::Watch>, ExitCode> 
             | Command::Report(_)
             | Command::Journal(_)
             | Command::Compare(_)
+            | Command::Estimate(_)
             | Command::Verify(_)
             | Command::Fmt(_)
     );
@@ -186,6 +188,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
             comparison::identify_all(arguments, &cli.global)
         }
         Command::Identify(arguments) => identify::identify(arguments, &cli.global),
+        Command::Estimate(arguments) => estimate::states(arguments, &cli.global),
         Command::New(arguments) => new::new(arguments, &cli.global),
         Command::Import(arguments) => import::import(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),

@@ -72,6 +72,7 @@ pub(super) fn refusal(command: &Command) -> Option<String> {
                 unfinished_name(path).or_else(|| other_kind(path, FileKind::Problem))
             })
         }
+        Command::Estimate(arguments) => other_kind(&arguments.problem, FileKind::Problem),
         Command::Teach(arguments) => other_kind(&arguments.run.input, FileKind::Script),
         Command::New(arguments) => {
             other_kind(&arguments.data, FileKind::Table).or_else(|| missing_model(&arguments.model))

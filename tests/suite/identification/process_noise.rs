@@ -95,7 +95,7 @@ fn noise_and_errors_of_measurement_are_estimated_together() {
     let log = result["negative_log_likelihood"].as_f64().unwrap();
     assert!((log + 20.528069195977533).abs() < 1e-8, "{log}\n{text}");
     assert!(text.contains("1/sqrt(s)"), "{text}");
-    // SciPy's least -log L without noise of w is 119 larger.
+    // SciPy's least -log L within these ranges and without noise of w is 118.654 larger.
     for words in [
         "The data need the process noise: without `noise of w`, -log L is larger by 119",
         "The innovations of experiment 1 / T are white noise",
@@ -220,4 +220,51 @@ end Ball;
         assert!(error.contains(expected), "{error}");
         assert!(error.contains("p.toml:"), "{error}");
     }
+}
+
+/// The last states of the fit above, and a fit that did not happen: its values are given in the problem.
+#[test]
+fn states_are_estimated_with_given_parameters() {
+    let problem = room_problem("0.638691362", ", sigma = 0.0928684705")
+        .replace("{ min = 1, max = 20 }", "{ fixed = 4.159339014 }")
+        .replace("{ min = 0.2, max = 20 }", "{ fixed = 1.525816715 }");
+    let folder = folder(&[("M.mo", ROOM), ("d.csv", &room_data()), ("p.toml", &problem)]);
+    let arguments = ["estimate", "p.toml", "--output", "s.csv", "--figure", "s.svg"];
+    let (code, out, error) = gapi(&folder, &arguments);
+    assert_eq!(code, 0, "{out}{error}");
+    assert!(out.contains("80 samples, -log L = -20.52807"), "{out}");
+    assert!(out.contains("w = "), "{out}");
+    let table = std::fs::read_to_string(folder.path().join("s.csv")).unwrap();
+    let head = "\"time\",\"T\",\"sd(T)\",\"w\",\"sd(w)\",\"predicted(T)\",\"sd(predicted(T))\",\"measured(T)\"";
+    assert_eq!(table.lines().next(), Some(head));
+    let last: Vec<f64> =
+        table.lines().last().unwrap().split(',').map(|own| own.parse().unwrap()).collect();
+    // By the same filter in numpy: states after the last sample, prediction before it.
+    let expected = [
+        79.0,
+        -1.433991103,
+        0.081033163,
+        -1.318963534,
+        0.503688025,
+        -1.303157150,
+        0.190105633,
+        -1.475000000,
+    ];
+    for (found, expected) in last.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-6, "{last:?}");
+    }
+    assert!(std::fs::read_to_string(folder.path().join("s.svg")).unwrap().contains("95 % band"));
+    let free = room_problem("0.6", ", sigma = 0.1");
+    let folder = crate::support::program::folder(&[
+        ("M.mo", ROOM),
+        ("d.csv", &room_data()),
+        ("p.toml", &free),
+    ]);
+    let (code, _, error) = gapi(&folder, &["estimate", "p.toml"]);
+    assert_eq!(code, 1, "{error}");
+    assert!(error.contains("no value is given for `C`, `R`"), "{error}");
+    let (code, out, error) = gapi(&folder, &["identify", "p.toml", "--out", "o", "--plain"]);
+    assert_eq!(code, 0, "{out}{error}");
+    let (code, out, error) = gapi(&folder, &["estimate", "p.toml", "--values", "o/result.json"]);
+    assert_eq!(code, 0, "{out}{error}");
 }

@@ -30,6 +30,7 @@ fn version_and_help() {
         "flatten",
         "compare",
         "verify",
+        "estimate",
         "explain",
         "completions",
         "man",

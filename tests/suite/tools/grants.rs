@@ -19,6 +19,8 @@ use std::time::{Duration, Instant};
 const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/compare.rs", "Read", 1),
     ("cli/check.rs", "CheckOnly", 1),
+    ("cli/estimate.rs", "Named", 1),
+    ("cli/estimate.rs", "Read", 1),
     // The unit that is written, the file with values of parameters, and its copy beside the unit.
     ("cli/export_fmu.rs", "Named", 2),
     ("cli/export_fmu.rs", "Read", 1),

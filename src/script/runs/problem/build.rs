@@ -67,6 +67,8 @@ struct ExperimentData<'f> {
 #[derive(Default)]
 struct Experiments {
     fitted: Vec<Experiment>,
+    /// The uncertain states of each of these, and their variances.
+    states: Vec<Vec<[String; 2]>>,
     series: Vec<Series>,
     validation: Vec<(Experiment, Vec<Series>)>,
     /// The relative error of simulated values.
@@ -100,36 +102,21 @@ fn build_in(
     file: &mut ProblemFile,
     folder: &Path,
 ) -> Result<Built, Vec<Diagnostic>> {
-    load_models(session, file, folder)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    let unit = imported::unit(session, file, folder)?;
-    if unit.is_none() {
-        check_class(session, file)?;
-    } else {
-        let bytes = session
-            .read_bytes(&folder.join(&file.model))
-            .at(file.places.at(&["model"]))
-            .map_err(alone)?;
-        origins.add(format!("`{}`", file.model), &bytes);
-    }
-    set_file::read(session, file, unit.as_deref(), folder, (&mut notes, &mut origins))?;
+    let Prepared { mut read, free, unit } =
+        prepared(session, file, folder, (&mut notes, &mut origins))?;
     let file = &*file;
-    origins.add_problem(&file.table);
-    let data = data_of(session, file, folder, (&mut notes, &mut origins))?;
-    let mut free = free_parameters(file, &data).map_err(alone)?;
     if free.is_empty() {
         let fault = fault!(BAD_OPTION, "no parameter is estimated");
         let place = file.places.at(&["parameters"]);
         return Err(vec![fault.help("give one a range: `k = { min = 0.1, max = 10 }`").at(place)]);
     }
-    let model = (file, unit.as_ref());
-    let mut read = experiments(session, model, &data, &free, &mut notes)?;
-    noise::set_ranges(file, (&read.fitted, &read.series), &mut free).map_err(alone)?;
     if file.fitness.is_none() {
         decide(&mut read.series);
     }
-    let Experiments { fitted, series, validation, noise, calibration, undecided, logarithmic } =
-        read;
+    let Experiments {
+        fitted, series, validation, noise, calibration, undecided, logarithmic, ..
+    } = read;
     let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &fitted);
     // Made once here, so that what is wrong shows before the run.
@@ -150,6 +137,74 @@ fn build_in(
     let noise = (!file.noise.is_empty()).then(|| noise::estimated(file));
     let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise };
     Ok(Built { problem, experiments, validation, origins, notes, calibration, doubts, unit })
+}
+
+/// The experiments of a problem, and its free parameters.
+struct Prepared {
+    read: Experiments,
+    free: Vec<Free>,
+    unit: Option<Arc<Imported>>,
+}
+
+/// An experiment that is filtered, with its uncertain states and their variances.
+pub(super) struct FilteredExperiment {
+    pub experiment: Experiment,
+    pub series: Vec<Series>,
+    pub states: Vec<[String; 2]>,
+}
+
+/// The experiments of a problem with process noise, its free parameters, and notes.
+///
+/// # Errors
+///
+/// Everything that is wrong with the models or the data.
+pub(super) fn filtered_experiments(
+    session: &mut Session,
+    file: &mut ProblemFile,
+    path: &Path,
+) -> Result<(Vec<FilteredExperiment>, Vec<Free>, Vec<Note>), Vec<Diagnostic>> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (mut notes, mut origins) = (Notes::default(), Origins::new());
+    let around = session.execution.read_problem(Some(folder.to_owned()));
+    let made = prepared(session, file, folder, (&mut notes, &mut origins));
+    session.execution.read_problem(around);
+    let Prepared { read, free, .. } = made?;
+    let mut series = read.series.into_iter();
+    let with_states = read.fitted.into_iter().zip(read.states);
+    let all = with_states.map(|(experiment, states)| {
+        let series = series.by_ref().take(experiment.observations.len()).collect();
+        FilteredExperiment { experiment, series, states }
+    });
+    Ok((all.collect(), free, notes.into_notes()))
+}
+
+/// Reads models and data.
+fn prepared(
+    session: &mut Session,
+    file: &mut ProblemFile,
+    folder: &Path,
+    (notes, origins): (&mut Notes, &mut Origins),
+) -> Result<Prepared, Vec<Diagnostic>> {
+    load_models(session, file, folder)?;
+    let unit = imported::unit(session, file, folder)?;
+    if unit.is_none() {
+        check_class(session, file)?;
+    } else {
+        let bytes = session
+            .read_bytes(&folder.join(&file.model))
+            .at(file.places.at(&["model"]))
+            .map_err(alone)?;
+        origins.add(format!("`{}`", file.model), &bytes);
+    }
+    set_file::read(session, file, unit.as_deref(), folder, (notes, origins))?;
+    let file = &*file;
+    origins.add_problem(&file.table);
+    let data = data_of(session, file, folder, (notes, origins))?;
+    let mut free = free_parameters(file, &data).map_err(alone)?;
+    let model = (file, unit.as_ref());
+    let read = experiments(session, model, &data, &free, notes)?;
+    noise::set_ranges(file, (&read.fitted, &read.series), &mut free).map_err(alone)?;
+    Ok(Prepared { read, free, unit })
 }
 
 /// Adds priors, constraints and logarithms.
@@ -281,6 +336,7 @@ fn experiments(
             continue;
         }
         all.fitted.push(built.experiment);
+        all.states.push(built.states);
         let logarithmic = super::inference::logarithmic(entry).map_err(alone)?;
         let first = all.series.len();
         all.logarithmic.extend(logarithmic.into_iter().map(|(own, place)| (first + own, place)));

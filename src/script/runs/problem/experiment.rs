@@ -48,10 +48,24 @@ pub(super) struct Built {
     pub series: Vec<Series>,
     /// The relative error of simulated values that the integrator makes.
     pub(crate) error: f64,
+    /// Where it is filtered, its uncertain states and their variances.
+    pub states: Vec<[String; 2]>,
     /// Its compiled model; `None` where it is a functional mock-up unit.
     pub program: Option<Arc<Program>>,
     /// Inputs of which it is not known how they continue between samples.
     pub undecided: Vec<Undecided>,
+}
+
+impl Built {
+    /// One that is not filtered, and whose inputs are decided.
+    pub(super) fn plain(
+        (experiment, series): (Experiment, Vec<Series>),
+        error: f64,
+        program: Option<Arc<Program>>,
+    ) -> Built {
+        let (states, undecided) = (Vec::new(), Vec::new());
+        Built { experiment, series, error, states, program, undecided }
+    }
 }
 
 /// What an experiment is read from.
@@ -187,15 +201,15 @@ impl Source<'_> {
             parameters: class.parameters,
         };
         let compared = self.compare(session, subject, (&abscissa, &class.observed), notes)?;
-        let (experiment, series, program) = match self.file.noise.is_empty() {
-            true => (compared.0, compared.1, program),
+        let (experiment, series, program, states) = match self.file.noise.is_empty() {
+            true => (compared.0, compared.1, program, Vec::new()),
             false => {
                 filtering::filtered(session, (self.file, self.entry), &class.name, compared, notes)?
             }
         };
         let error = if has_states { error_of(&program, &experiment.settings) } else { 0.0 };
         let undecided = class.undecided;
-        Ok(Built { experiment, series, error, program: Some(program), undecided })
+        Ok(Built { experiment, series, error, program: Some(program), states, undecided })
     }
 
     /// The comparison of a model with the data.
@@ -316,12 +330,11 @@ impl Source<'_> {
         x: &Abscissa,
         notes: &mut Notes,
     ) -> Result<Class, Vec<Diagnostic>> {
-        let (file, entry) = (self.file, self.entry);
+        let Source { file, entry, label, segment, free, .. } = *self;
         let base =
             Base::of(&file.model, file.places.text(&["model"])).map_err(|error| vec![error])?;
         let here = (self.number, entry.places.at(&["data"]));
         let mut enclosing = EnclosingClass::default();
-        let (label, segment, free) = (self.label, self.segment, self.free);
         let setting = parameters::Setting { file, entry, label, segment, free, of_deviations: &[] };
         let formulas = deviation::formulas(entry, self.table);
         let plain = types_of(session, &file.model, (!formulas.is_empty(), setting.needs_types()))?;

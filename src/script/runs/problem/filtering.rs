@@ -15,6 +15,9 @@ use crate::models::filter::{self, Measured, MeasuredSigma};
 use crate::registry::BAD_OPTION;
 use std::sync::Arc;
 
+/// An experiment with its series, its program, and the uncertain states with their variances.
+pub(super) type FilteredModel = (Experiment, Vec<Series>, Arc<Program>, Vec<[String; 2]>);
+
 /// The experiment with the filtered model of this class in place of its model: its points are
 /// predictions.
 ///
@@ -27,7 +30,7 @@ pub(super) fn filtered(
     class: &str,
     (mut experiment, mut series): (Experiment, Vec<Series>),
     notes: &mut Notes,
-) -> Result<(Experiment, Vec<Series>, Arc<Program>), Vec<Diagnostic>> {
+) -> Result<FilteredModel, Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
     // Deviations that the model computes belong to its outputs.
     series.retain(Series::is_data);
@@ -64,7 +67,7 @@ pub(super) fn filtered(
         let experiment = &experiment.name;
         notes.add(format!("{experiment}: `{name}` has no `sigma`; it is estimated"));
     }
-    Ok((experiment, series, program))
+    Ok((experiment, series, program, found.states))
 }
 
 /// The standard deviation of the measurements of an output.

@@ -97,7 +97,7 @@ pub(super) fn build(
     let observed: Vec<String> = entry.all_outputs().map(|(name, _)| name.clone()).collect();
     let (experiment, series) = source.compare(session, subject, (abscissa, &observed), notes)?;
     let error = experiment.settings.tolerance;
-    Ok(Built { experiment, series, error, program: None, undecided })
+    Ok(Built { undecided, ..Built::plain((experiment, series), error, None) })
 }
 
 /// Which of two kinds a unit is simulated by, and how the other one is chosen.

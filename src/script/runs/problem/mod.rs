@@ -17,6 +17,7 @@ mod draft_subject;
 mod driven;
 mod dynamics;
 mod enclosing_class;
+mod estimate;
 mod experiment;
 mod failing;
 pub(super) mod fault_codes;
@@ -73,6 +74,7 @@ use crate::{bail, fault};
 pub use draft::{Draft, Question, draft};
 pub use draft_subject::DraftOptions;
 pub use driven::{Driven, driven, note_outside};
+pub use estimate::{Estimated, estimate};
 pub use imported::{FollowedInputs, inputs_of};
 pub use shards::{Division, read_shards};
 

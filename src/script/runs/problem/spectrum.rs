@@ -97,7 +97,7 @@ pub(super) fn build(
     test_kramers_kronig(&series, notes);
     weigh(&mut series, weighting).map_err(|fault| there(fault, &["outputs"]))?;
     let error = if at > start { experiment.settings.tolerance } else { 0.0 };
-    Ok(Built { experiment, series, error, program: Some(program), undecided: Vec::new() })
+    Ok(Built::plain((experiment, series), error, Some(program)))
 }
 
 /// Refuses parameters and initial values that the model does not have.
