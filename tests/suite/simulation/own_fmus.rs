@@ -922,6 +922,44 @@ fn literals_are_values_of_calibrated_models() {
     assert!(model.contains("mode = .M.Mode.on"), "{model}");
 }
 
+/// A unit is fitted with the digits of its model: same derivatives, nominal values, steps. Without the nominal value
+/// of the state, 3, the values differ by 1e-6.
+#[test]
+fn a_unit_is_fitted_with_the_digits_of_its_model() {
+    let text = "model M parameter Real V = 2; parameter Real K = 0.5; Real s(start = 3, fixed = true); \
+                output Real y = s; equation der(s) = -V*s/(K + s); end M;";
+    // The solution of s' = -2 s/(0.5 + s), its inverse in closed form: t = (3 - s)/2 + 0.25 ln(3/s).
+    let row = |n: u32| {
+        let s = 3.0 - 0.07 * f64::from(n);
+        let noise = 0.01 * (53.0 * f64::from(n * n)).sin();
+        format!("{},{}\n", (3.0 - s) / 2.0 + 0.25 * (3.0 / s).ln(), s + noise)
+    };
+    let data: String = (0..=40).map(row).collect();
+    let here = folder(&[("M.mo", text), ("d.csv", &format!("time,y\n{data}"))]);
+    let (code, out, errors) = exporting(&here, &["export-fmu", "M.mo", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let fitted = |head: &str| -> Vec<f64> {
+        let problem = format!(
+            "{head}\n[parameters]\nV = {{ min = 0.4, max = 10 }}\nK = {{ min = 0.1, max = 2.5 }}\n\
+             [[experiment]]\ndata = \"d.csv\"\noutputs = {{ y = \"y\" }}\n"
+        );
+        fs::write(here.path().join("p.toml"), problem).expect("written");
+        let identify = ["identify", "p.toml", "--allow-external", "--overwrite", "--out", "o"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let values = result["parameters"].as_array().expect("parameters").iter();
+        values.map(|own| own["value"].as_f64().expect("a number")).collect()
+    };
+    let own = fitted("model = \"M\"\nfiles = [\"M.mo\"]");
+    let unit = fitted("model = \"unit.fmu\"");
+    near(own[0], 2.0, 0.1);
+    for (own, unit) in own.iter().zip(&unit) {
+        near(unit / own, 1.0, 1e-11);
+    }
+}
+
 /// Platforms that a script asks for by name are noted, those of every importer are not.
 #[test]
 fn platforms_of_a_build_are_noted() {
