@@ -1,6 +1,7 @@
 //! `gapi linearize`: poles, zeros and responses against their formulas.
 
 use crate::support::program::{folder, gapi};
+use gapilib::internals::frequency::Number;
 use std::fs;
 
 /// A mass on a spring and a damper, of which the force is the input: x/F = 1/(m s² + d s + k) with
@@ -81,3 +82,113 @@ fn what_cannot_be_shown_is_refused() {
     let (code, out, _) = gapi(&here, &["linearize", "S.mo"]);
     assert!(code == 0 && out.contains("  -1 "), "{out}");
 }
+
+/// The largest distance between the response of a model with input `u` and output `y`, and a formula,
+/// relative to its magnitude.
+fn distance(model: &str, formula: impl Fn(Number) -> Number) -> f64 {
+    let here = folder(&[("M.mo", model)]);
+    let arguments = ["linearize", "M.mo", "--response", "r.csv", "--from", "1e-4", "--to", "1e3"];
+    let (code, out, errors) = gapi(&here, &arguments);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("r.csv")).unwrap();
+    let rows = text.lines().skip(1).map(|line| {
+        let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let exact = formula(Number::new(0.0, std::f64::consts::TAU * row[0]));
+        (Number::new(row[1], row[2]) - exact).norm_sqr().sqrt() / exact.norm_sqr().sqrt()
+    });
+    rows.fold(0.0, f64::max)
+}
+
+/// A ladder of rungs with a series element z and a parallel element p, fed at its begin and short at its
+/// end: the impedance by continued fractions.
+fn ladder(rungs: usize, z: Number, p: Number) -> Number {
+    (0..rungs).fold(Number::default(), |rest, _| {
+        let both = z + rest;
+        p * both / (p + both)
+    })
+}
+
+#[test]
+fn responses_are_those_of_the_formulas() {
+    let one = Number::new(1.0, 0.0);
+    // 100 volumes of diffusion: capacities of 0.01, conductances of 100 between them, 1 to the outside.
+    let diffusion = "model M\n  parameter Integer n = 100;\n  input Real u(start = 0);\n  \
+        output Real y;\n  Real c[n](each start = 0, each fixed = true);\nequation\n  \
+        0.01*der(c[1]) = u - 100*(c[1] - c[2]);\n  for i in 2:n - 1 loop\n    \
+        0.01*der(c[i]) = 100*(c[i - 1] - 2*c[i] + c[i + 1]);\n  end for;\n  \
+        0.01*der(c[n]) = 100*(c[n - 1] - c[n]) - c[n];\n  y = c[1];\nend M;\n";
+    let of_diffusion = |s: Number| {
+        let last = one / (s * 0.01 + 1.0);
+        (1..100).fold(last, |rest, _| one / (s * 0.01 + one / (rest + 0.01)))
+    };
+    assert!(distance(diffusion, of_diffusion) < 1e-9);
+    // 40 rungs of inductance with resistance, and capacitance, short at the end.
+    let line = "model M\n  parameter Integer n = 40;\n  input Real u(start = 0);\n  output Real y;\n  \
+        Real v[n](each start = 0, each fixed = true);\n  \
+        Real i[n](each start = 0, each fixed = true);\nequation\n  \
+        0.1*der(v[1]) = u - i[1];\n  for k in 2:n loop\n    0.1*der(v[k]) = i[k - 1] - i[k];\n  \
+        end for;\n  for k in 1:n - 1 loop\n    0.2*der(i[k]) = v[k] - v[k + 1] - 0.3*i[k];\n  \
+        end for;\n  0.2*der(i[n]) = v[n] - 0.3*i[n];\n  y = v[1];\nend M;\n";
+    let of_line = |s: Number| ladder(40, s * 0.2 + 0.3, one / (s * 0.1));
+    assert!(distance(line, of_line) < 1e-9);
+    for (declarations, equations, formula) in SMALL {
+        let model = format!(
+            "model M\n  input Real u(start = 0);\n  output Real y;\n  {declarations}\nequation\n  \
+             {equations}\nend M;\n"
+        );
+        let off = distance(&model, formula);
+        assert!(off < 1e-9, "{equations}: {off:e}");
+    }
+}
+
+type Formula = fn(Number) -> Number;
+
+/// Filters, drives and loops: declarations, equations, and y/u.
+const SMALL: [(&str, &str, Formula); 8] = [
+    // Butterworth, third order.
+    (
+        "Real x[3](each start = 0, each fixed = true);",
+        "der(x[1]) = x[2]; der(x[2]) = x[3]; der(x[3]) = u - x[1] - 2*x[2] - 2*x[3]; y = x[1];",
+        |s| 1.0 / ((s + 1.0) * (s * s + s + 1.0)),
+    ),
+    // An all-pass: a zero in the right half plane.
+    ("Real x(start = 0, fixed = true);", "der(x) = u - x; y = 2*x - u;", |s| (1.0 - s) / (1.0 + s)),
+    // A notch.
+    (
+        "Real x(start = 0, fixed = true); Real v(start = 0, fixed = true);",
+        "der(x) = v; der(v) = u - 4*x - 0.8*v; y = u - 0.72*v;",
+        |s| (s * s + s * 0.08 + 4.0) / (s * s + s * 0.8 + 4.0),
+    ),
+    // A lead: the input's derivative is filtered.
+    ("Real x(start = 0, fixed = true);", "0.01*der(x) = u - x; y = 3*u + 2*(u - x)/0.01;", |s| {
+        3.0 + s * 2.0 / (s * 0.01 + 1.0)
+    }),
+    // A motor: voltage to speed.
+    (
+        "Real i(start = 0, fixed = true); Real w(start = 0, fixed = true);",
+        "0.5*der(i) = u - 2*i - 0.1*w; 0.02*der(w) = 0.1*i - 0.005*w; y = w;",
+        |s| 0.1 / ((s * 0.5 + 2.0) * (s * 0.02 + 0.005) + 0.01),
+    ),
+    // Two masses on a shaft, index 2 where the masses are rigidly coupled to the gear: w = 5 v.
+    (
+        "Real w(start = 0, fixed = true, stateSelect = StateSelect.prefer); Real v; Real t;",
+        "w = 5*v; 2*der(w) = u - t/5; 3*der(v) = t - 0.7*v; y = v;",
+        |s| (1.0 / 5.0) / (s * (2.0 + 3.0 / 25.0) + 0.7 / 25.0),
+    ),
+    // A control loop: PI on a plant of second order, from the reference.
+    (
+        "Real e; Real q(start = 0, fixed = true); Real a(start = 0, fixed = true); \
+         Real b(start = 0, fixed = true);",
+        "e = u - b; der(q) = e; der(a) = 3*e + q - a; 2*der(b) = a - b; y = b;",
+        |s| {
+            let open = (3.0 + 1.0 / s) / ((s + 1.0) * (s * 2.0 + 1.0));
+            open / (open + 1.0)
+        },
+    ),
+    // A nonlinear loop about its solution z = 1: 3 z² + 1 = 4.
+    (
+        "Real x(start = 1, fixed = true); Real z(start = 1);",
+        "z^3 + z = u + 2*x; der(x) = 1 - z; y = z;",
+        |s| s / (s * 4.0 + 2.0),
+    ),
+];
