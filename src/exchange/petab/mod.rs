@@ -324,7 +324,7 @@ impl Problem {
         if rest.is_some() {
             _ = writeln!(
                 text,
-                "# It comes to rest before 0.\nstart_time = {}",
+                "# It comes to rest before 0, which is tested.\nrest = true\nstart_time = {}",
                 number(-experiment.until_rest())
             );
         }

@@ -65,6 +65,8 @@ pub enum FindingKind {
     Failures,
     /// A prior that dominates the data or contradicts them.
     Prior,
+    /// An experiment that is not at rest when its data begin.
+    NotAtRest,
     /// Estimates at the limit of a constraint.
     Constraint,
     /// What the process noise explains.

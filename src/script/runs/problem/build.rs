@@ -11,7 +11,7 @@ use super::inputs::Undecided;
 use super::misread::{self, Doubts};
 use super::operators::{self, Named};
 use super::segments::Segment;
-use super::{experiment, imported, noise, own_fitness, set_file, spectrum};
+use super::{experiment, imported, noise, own_fitness, rest, set_file, spectrum};
 use crate::Session;
 use crate::diag::{At as _, Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
@@ -71,6 +71,7 @@ struct Experiments {
     states: Vec<Vec<[String; 2]>>,
     series: Vec<Series>,
     validation: Vec<(Experiment, Vec<Series>)>,
+    rests: Vec<[Experiment; 2]>,
     /// The relative error of simulated values.
     noise: f64,
     calibration: Option<Calibration>,
@@ -115,7 +116,15 @@ fn build_in(
         decide(&mut read.series);
     }
     let Experiments {
-        fitted, series, validation, noise, calibration, undecided, logarithmic, ..
+        fitted,
+        series,
+        validation,
+        rests,
+        noise,
+        calibration,
+        undecided,
+        logarithmic,
+        ..
     } = read;
     let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &fitted);
@@ -135,7 +144,7 @@ fn build_in(
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
     let noise = (!file.noise.is_empty()).then(|| noise::estimated(file));
-    let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise };
+    let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise, rests };
     Ok(Built { problem, experiments, validation, origins, notes, calibration, doubts, unit })
 }
 
@@ -335,6 +344,7 @@ fn experiments(
             all.validation.push((built.experiment, built.series));
             continue;
         }
+        all.rests.extend(rest::both(entry, &built.experiment));
         all.fitted.push(built.experiment);
         all.states.push(built.states);
         let logarithmic = super::inference::logarithmic(entry).map_err(alone)?;

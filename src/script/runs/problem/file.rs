@@ -136,6 +136,9 @@ pub(super) struct ExperimentEntry {
     /// Before it all derivatives were zero.
     #[serde(default)]
     pub(crate) steady_state: bool,
+    /// Whether its simulation comes to rest before 0.
+    #[serde(default)]
+    pub(crate) rest: bool,
     /// When its simulation begins, in seconds; its initial values are those of this time.
     pub start_time: Option<f64>,
     pub stop_time: Option<f64>,

@@ -5,10 +5,13 @@ use super::file::{Column, ColumnEntry, ExperimentEntry, ProblemFile, SegmentsEnt
 use super::inputs::Undecided;
 use super::interpolation;
 use super::noise_test;
+use super::rest;
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
-use crate::identify::problem::{Finding, FindingKind, Reading, Run, Solution, promises, short_fit};
+use crate::identify::problem::{
+    Experiment, Finding, FindingKind, Reading, Run, Solution, promises, short_fit,
+};
 
 /// Times in minutes, hours and milliseconds that are read as seconds, and a model that counts in minutes
 /// or hours.
@@ -42,6 +45,8 @@ pub(super) struct Doubts {
     pub readings: Vec<Changed>,
     /// With process noise the densities that are estimated.
     pub noise: Option<Vec<String>>,
+    /// Experiments that are to be at rest when their data begin ([`super::rest`]).
+    pub rests: Vec<[Experiment; 2]>,
 }
 
 impl Doubts {
@@ -56,6 +61,7 @@ impl Doubts {
         (run, solution): (&mut Run, &mut Solution),
         again: &mut Again<'_>,
     ) -> Result<(), Fault> {
+        solution.findings.extend(rest::not_reached(run, &self.rests));
         interpolation::try_others(session, (run, solution), &self.undecided, again)?;
         if let Some(names) = &self.noise {
             noise_test::compare(session, (run, solution), names, again)?;

@@ -44,6 +44,7 @@ mod parameters;
 mod places;
 mod record;
 mod refusal;
+mod rest;
 mod search;
 mod searches;
 mod segments;
@@ -619,7 +620,9 @@ fn validated(
         let mut rest = row.as_slice();
         for series in series {
             let (own, others) = rest.split_at(series.x.len());
-            solved.push(SolvedSeries::new(series, own));
+            if series.is_data() {
+                solved.push(SolvedSeries::new(series, own));
+            }
             rest = others;
         }
     }

@@ -468,3 +468,31 @@ fn values_that_are_not_compared_may_be_missing() {
     let said = format!("{errors:?}");
     assert!(said.contains("a division by zero"), "{said}");
 }
+
+/// x' = k (u - x) with u = 2 before 0 and 0 from then on, after 10 s at u = 2: at rest for k = 3, not for
+/// k = 0.1.
+#[test]
+fn an_experiment_that_does_not_come_to_rest_is_named() {
+    let model = "model M\n  parameter Real k = 1;\n  Real x(start = 0, fixed = true);\nequation\n  \
+                 der(x) = k*((if time < 0 then 2 else 0) - x);\nend M;\n";
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+                   k = { min = 0.01, max = 9 }\n[[experiment]]\nname = \"step\"\ndata = \"d.csv\"\n\
+                   start_time = -10\nrest = true\noutputs = { x = { column = \"x\", sigma = 0.01 } }\n";
+    for (k, is_at_rest) in [(3.0, true), (0.1, false)] {
+        let begin = 2.0 * (1.0 - f64::exp(-10.0 * k));
+        let rows: String = (0..8)
+            .map(|row| {
+                let time = f64::from(row) / k / 4.0;
+                format!("{time},{}\n", begin * f64::exp(-k * time) + 0.01 * f64::from(row % 2))
+            })
+            .collect();
+        let solution = solved(&[
+            ("p.toml", problem.to_owned()),
+            ("M.mo", model.to_owned()),
+            ("d.csv", format!("time,x\n{rows}")),
+        ]);
+        assert!((value(&solution, "k") / k - 1.0).abs() < 0.05, "{}", solution.text());
+        let said = solution.text();
+        assert_eq!(said.contains("step: the model is not at rest"), !is_at_rest, "{said}");
+    }
+}
