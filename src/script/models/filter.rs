@@ -302,7 +302,7 @@ impl Filter<'_> {
         let numbers: Vec<f64> = (0..knots.len()).map(|number| number as f64).collect();
         self.follow(SAMPLE, BaseType::Integer, (&knots, numbers));
         for (k, own) in self.measured.iter().enumerate() {
-            let at = |time: &f64| own.times.iter().position(|own| own == time);
+            let at = |time: &f64| own.times.binary_search_by(|own| own.total_cmp(time)).ok();
             let of = |values: &[f64]| -> Vec<f64> {
                 let next = knots[1..].iter().map(|time| at(time).map_or(0.0, |at| values[at]));
                 let mut held: Vec<f64> = next.collect();

@@ -27,6 +27,7 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/check/imported.rs", "Read", 1),
     ("cli/identify.rs", "Read", 1),
     ("cli/import.rs", "Read", 1),
+    ("cli/linearize.rs", "Named", 1),
     ("cli/new.rs", "Named", 1),
     ("cli/repl/commands.rs", "Named", 1),
     ("cli/report.rs", "Own", 1),

@@ -186,8 +186,9 @@ impl Table<'_> {
     fn add(&mut self, names: &[String], unit: &str, (x, columns): (&[f64], &[Vec<f64>])) {
         let mut shown = [const { None }; 3];
         for ((name, values), shown) in names.iter().zip(columns).zip(&mut shown) {
-            let at =
-                |time: &f64| x.iter().position(|own| own == time).map_or(f64::NAN, |at| values[at]);
+            let at = |time: &f64| {
+                x.binary_search_by(|own| own.total_cmp(time)).ok().map_or(f64::NAN, |at| values[at])
+            };
             let values = self.times.iter().map(at).collect();
             let name = self.free_name(name);
             self.table.series.push(Series {

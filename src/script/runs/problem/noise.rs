@@ -182,17 +182,19 @@ pub(super) fn set_ranges(
             (Subject::State(_), "degC") => "K/sqrt(s)".to_owned(),
             (Subject::State(_), unit) => format!("{unit}/sqrt(s)"),
         };
-        let range = match own.range {
-            Some(range) => range,
+        let (range, start) = match own.range {
+            Some(range) => (range, own.start),
             None => {
                 let Some((size, interval)) = change(series, name, &unit) else {
                     return Err(no_range(name).at(place(file, &own.of)));
                 };
                 let root = if matches!(own.of, Subject::State(_)) { interval.sqrt() } else { 1.0 };
-                RANGE.map(|part| part * size / root)
+                // With less noise than the data move, predictions do not follow them, and a descent
+                // begins where the likelihood is all but flat.
+                (RANGE.map(|part| part * size / root), own.start.or(Some(size / root)))
             }
         };
-        let made = Free::new(own.name, unit_of, range, Some(true), own.start);
+        let made = Free::new(own.name, unit_of, range, Some(true), start);
         free[at] = made.at(place(file, &own.of))?;
     }
     Ok(())
