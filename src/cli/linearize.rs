@@ -171,7 +171,10 @@ fn chosen(linear: &Linear, inputs: &[String]) -> Result<Vec<usize>, Fault> {
             fault!(BAD_OPTION, "`{name}` is not a continuous input of the model").help(help)
         })
     };
-    inputs.iter().map(place).collect()
+    let mut places: Vec<usize> = inputs.iter().map(place).collect::<Result<_, _>>()?;
+    let mut seen = std::collections::BTreeSet::new();
+    places.retain(|place| seen.insert(*place));
+    Ok(places)
 }
 
 /// Poles, and zeros and static gains from each input to each output.

@@ -12,7 +12,9 @@
 //! G = exp((Σ_given uᵢ² + Σ_g n_g ln s_g² + Σ_computed (uᵢ² + 2 ln σᵢ)) / N), which grows with -log L,
 //! and N the number of points with those of the deviations: residuals √G κ uᵢ (estimated: uᵢ / s_g),
 //! and √G κ (uᵢ² - 1)/√2 of the deviations, whose squares add up to N G; factors √G wᵢ/κ (over s_g or
-//! σᵢ), and -√G √2/(κ σᵢ) of the deviations, for which the gradient is exact;
+//! σᵢ), and -√G √2/(κ σᵢ) of the deviations, for which the gradient is exact; where deviations are
+//! computed, factors are κ² times that, so that a step from far away, where κ is small, is that of the
+//! Fisher scoring;
 //! κ² = N / (Σ_given uᵢ² + Σ_g n_g + Σ_computed (uᵢ² + ½ (uᵢ² - 1)²)), near 1 where the deviations
 //! hold. The factors give the Fisher information: 2/σᵢ² of a deviation.
 //!
@@ -139,6 +141,8 @@ impl Fitness for Concentrated {
         let root = elementary::exp(0.5 * self.exponent(&scales) / n);
         let square = scales.given + self.count.iter().sum::<f64>() + scales.computed_squares;
         let kappa = (n / square).sqrt();
+        let is_computed = self.n_measured < n;
+        let per = if is_computed { 1.0 / kappa } else { kappa };
         for (k, &deviation) in self.deviations.iter().enumerate() {
             let own = match deviation {
                 Deviation::Given => 1.0,
@@ -148,12 +152,12 @@ impl Fitness for Concentrated {
                     let sigma = simulated[k];
                     let u = weights[point] / sigma * (simulated[point] - measured[point]);
                     residuals[k] = root * kappa * (u * u - 1.0) / SQRT_2;
-                    factors[k] = -root / kappa * SQRT_2 / sigma;
+                    factors[k] = -root / per * SQRT_2 / sigma;
                     continue;
                 }
             };
             residuals[k] = root * kappa * weights[k] / own * (simulated[k] - measured[k]);
-            factors[k] = root / kappa * weights[k] / own;
+            factors[k] = root / per * weights[k] / own;
         }
         true
     }
@@ -267,7 +271,13 @@ mod tests {
         let expected = (square(0.2 + h).0 - square(0.2 - h).0) / (2.0 * h);
         let (_, r, f) = square(0.2);
         let derivative = [1.0, 0.0, -1.0, 0.4, -0.3];
-        let found: f64 = (0..5).map(|k| 2.0 * f[k] * r[k] * derivative[k]).sum();
+        // The factors have κ² besides those of the gradient.
+        let residuals = [(s[0] - 1.0) / s[3], 0.5 * (s[1] - 2.0) / s[4], 2.0 * (s[2] - 3.0)];
+        let squares: f64 = residuals.iter().map(|u| u * u).sum();
+        let excess: f64 = residuals[..2].iter().map(|u| 0.5 * (u * u - 1.0).powi(2)).sum();
+        let kappa_squared = 5.0 / (squares + excess);
+        let found: f64 =
+            (0..5).map(|k| 2.0 * f[k] * r[k] * derivative[k]).sum::<f64>() / kappa_squared;
         assert!((found - expected).abs() < 1e-7 * expected.abs(), "{found} {expected}");
         // What is no deviation has failed.
         let negative = [1.0, 2.0, 3.0, -0.1, 0.5];

@@ -475,7 +475,7 @@ fn chi_square(
     outliers: &[usize],
     alpha: f64,
 ) -> Option<Finding> {
-    if !statistics.believed {
+    if ErrorModel::of(problem) != ErrorModel::Known || !statistics.believed {
         return None;
     }
     let value = statistics.chi_square(problem, outliers);

@@ -412,7 +412,10 @@ impl Evaluation {
         };
         let values: Vec<f64> = problem.objectives.iter().map(value).collect();
         let unrated = values.iter().position(|value| has_failed(*value));
-        (values, unrated.map(|k| unrated_by(&problem.objectives[k].0)))
+        let why = |k: usize| {
+            wrong_deviation(problem, row).unwrap_or_else(|| unrated_by(&problem.objectives[k].0))
+        };
+        (values, unrated.map(why))
     }
 
     pub(super) fn residuals(&self, problem: &Problem, rows: &[f64]) -> Vec<f64> {
@@ -501,6 +504,28 @@ impl Evaluation {
         self.simulators.scale_tolerance(factor);
         self.forget();
     }
+}
+
+/// The first standard deviation of the model that is none.
+fn wrong_deviation(problem: &Problem, row: &[f64]) -> Option<Failed> {
+    let mut rest = row;
+    for series in &problem.series {
+        let (own, others) = rest.split_at(series.x.len().min(rest.len()));
+        rest = others;
+        let is_deviation = matches!(series.role, super::Role::Deviation(_));
+        let wrong = own.iter().position(|sigma| sigma.is_nan() || *sigma <= 0.0);
+        if let Some(at) = wrong.filter(|_| is_deviation) {
+            let (name, x) = (&series.x_name, series.x[at]);
+            let cause = format!(
+                "{}: the {} is {} at {name} = {x}, but a sigma must be positive",
+                series.experiment,
+                series.y_name.trim_matches('\''),
+                own[at]
+            );
+            return Some(Failed::new(super::FailureKind::Points, cause, 1.0));
+        }
+    }
+    None
 }
 
 fn unrated_by(name: &str) -> Failed {

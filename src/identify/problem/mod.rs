@@ -233,6 +233,7 @@ impl Series {
             sigma: Sigma::Given(vec![1.0; self.y.len()]),
             weight: 1.0,
             relative: Vec::new(),
+            missing: Vec::new(),
             ..self.clone()
         }
     }

@@ -313,7 +313,8 @@ fn effects(
 }
 
 fn chi_square(problem: &super::Problem, statistics: &Statistics) -> Option<ChiSquare> {
-    if !statistics.believed {
+    // Deviations that follow the parameters are fitted to the residuals.
+    if !statistics.believed || ErrorModel::of(problem) == ErrorModel::Computed {
         return None;
     }
     let value = statistics.chi_square(problem, &[]);

@@ -55,17 +55,12 @@ pub struct InputChain<'a> {
 }
 
 impl LinearPart {
-    /// Adds variables for the entries to a system. The output is the name of a variable.
+    /// Refuses systems that have no linear part of this form.
     ///
     /// # Errors
     ///
-    /// Names that the system does not have, an input that its states determine, an output that depends on
-    /// higher derivatives of the input than the chain has.
-    pub fn add_to(
-        sorted: &mut CausalizedDae,
-        chain: &InputChain<'_>,
-        output: &str,
-    ) -> Result<LinearPart, Fault> {
+    /// States that are chosen at run time, delays and transports.
+    pub fn refuse(sorted: &CausalizedDae) -> Result<(), Fault> {
         if !sorted.selections.is_empty() {
             return Err(fault!(
                 NOT_LINEARIZED,
@@ -82,6 +77,21 @@ impl LinearPart {
                 help: "replace them by a rational approximation, such as a chain of first-order blocks"
             ));
         }
+        Ok(())
+    }
+
+    /// Adds variables for the entries to a system. The output is the name of a variable.
+    ///
+    /// # Errors
+    ///
+    /// Names that the system does not have, an input that its states determine, an output that depends on
+    /// higher derivatives of the input than the chain has.
+    pub fn add_to(
+        sorted: &mut CausalizedDae,
+        chain: &InputChain<'_>,
+        output: &str,
+    ) -> Result<LinearPart, Fault> {
+        LinearPart::refuse(sorted)?;
         let mut pool = std::mem::take(&mut sorted.dae.pool);
         let made = Made::of(&mut pool, sorted, chain, output);
         sorted.dae.pool = pool;

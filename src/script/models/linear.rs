@@ -70,6 +70,9 @@ impl Linear {
 
     /// y/u at rest; `None` at a pole there.
     pub fn gain(&self, (output, input): (usize, usize)) -> Option<f64> {
+        if self.a.is_empty() {
+            return Some(self.d[(output, input)]);
+        }
         let x = self.a.clone().lu().solve(&-self.b.column(input))?;
         let value = (self.c.row(output) * x)[0] + self.d[(output, input)];
         Some(value).filter(|value| value.is_finite())

@@ -15,12 +15,14 @@ use super::simulation::{self, SimulationOptions, Translated};
 use crate::Session;
 use crate::causalize;
 use crate::codegen::errors::NOT_LINEARIZED;
-use crate::codegen::{Access, Program};
+use crate::codegen::{Access, LinearPart, Program};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
 use crate::results::ResultTable;
-use crate::sim::{Events, Failure, Residual};
+use crate::sim::{
+    Events, Failure, OutputGrid, Residual, Settings, SimErrorKind, Simulator, Trajectory,
+};
 use crate::source::{SourceId, Span};
 use crate::syntax;
 use crate::syntax::ast::{
@@ -63,7 +65,10 @@ fn linearized_variant(
         |name: &str| Ok::<f64, Fault>(done.table.column(name)?.last().copied().unwrap_or(f64::NAN));
     let y0: Result<Vec<f64>, Fault> = model.state_names().map(|name| last(name)).collect();
     let y0 = y0.at(at).map_err(one)?;
+    LinearPart::refuse(model.program.sorted()).at(at).map_err(one)?;
     let system = session.system_with_values(&model).map_err(one)?;
+    let settings = simulation::settings(&model.program.experiment(), options).at(at);
+    let settings = Settings { output: OutputGrid::At(vec![time]), ..settings.map_err(one)? };
     let places = Places::of(&model, &inputs).at(at).map_err(one)?;
     let outputs = match outputs {
         [] => outputs_of(&model.program),
@@ -72,7 +77,7 @@ fn linearized_variant(
             names.iter().map(place).collect::<Result<_, _>>().at(at).map_err(one)?
         }
     };
-    let slopes = reduced(system, time, &y0, &outputs)
+    let slopes = reduced(system, (&settings, time), &y0, &outputs)
         .map_err(|_| {
             Fault::new(
                 NOT_LINEARIZED,
@@ -186,14 +191,28 @@ fn outputs_of(program: &Program) -> Vec<usize> {
 /// algebraic equations are singular.
 fn reduced(
     mut system: crate::runtime::System,
-    time: f64,
+    (settings, time): (&Settings, f64),
     y0: &[f64],
     outputs: &[usize],
 ) -> Result<Option<DMatrix<f64>>, Failure> {
     system.solve_loops(false);
     let (n, m, p) = (system.n_differential(), system.n_algebraic(), outputs.len());
     let mut y = vec![0.0; n + m];
-    system.initialize(time, &mut y)?;
+    system.initialize(settings.start, &mut y)?;
+    if settings.start < time {
+        // Discrete variables have the values there that events have given them.
+        let done =
+            Simulator::new().resume(&mut system, settings, &mut y, &mut Trajectory::default());
+        if let Err(error) = done {
+            return Err(match error.kind {
+                SimErrorKind::Initialization(failure) | SimErrorKind::Evaluation(failure) => {
+                    failure
+                }
+                _ => Failure::Singular { block: 0 },
+            });
+        }
+        system.solve_loops(false);
+    }
     y[..n].copy_from_slice(y0);
     system.handle_event(time, &mut y)?;
     let whole = system.dense_jacobian(time, &y)?;

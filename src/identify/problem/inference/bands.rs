@@ -81,7 +81,11 @@ pub fn bands(
         };
         let points = curve.points.iter().enumerate().map(point).collect();
         place += curve.points.len();
-        let (experiment, series) = (curve.experiment, curve.series);
+        // Among those that are data.
+        let series = curve
+            .series
+            .map(|own| problem.series[..own].iter().filter(|series| series.is_data()).count());
+        let experiment = curve.experiment;
         bands.push(Band { experiment, y: curve.y, x: curve.x, series, points });
     }
     Ok(bands)

@@ -36,7 +36,7 @@ pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, CurveRequest, Curves, ModelPredictions, Predict, Reach};
 pub use term::{Function, Operator, Term};
 
-use super::{FindingKind, Run, Solution};
+use super::{ErrorModel, FindingKind, Run, Solution};
 use crate::diag::Fault;
 
 /// The parts, as the reader of a report knows them.
@@ -106,7 +106,16 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
         };
         found.bands = parts.part(BANDS, make)?;
     }
-    if let Some(settings) = &requested.design {
+    let is_computed = ErrorModel::of(&run.problem) == ErrorModel::Computed;
+    if is_computed && requested.design.is_some() {
+        // What further points would tell of their deviations is not counted.
+        parts.refusals.push(
+            "There is no plan for the next measurement where the model computes the standard \
+             deviations."
+                .to_owned(),
+        );
+    }
+    if let Some(settings) = requested.design.as_ref().filter(|_| !is_computed) {
         let make = |refusals: &mut Vec<String>| {
             design::next_measurement(&run.problem, settings, &local, refusals)
         };

@@ -252,13 +252,15 @@ fn on_grid(
         false => low + (high - low) * share,
     };
     let x: Vec<f64> = (0..=last as usize).map(|k| at(k as f64 / last)).collect();
-    let own = dense.observations.iter().map(|observation| observation.y_name.clone());
+    let compared = dense.observations.len() - dense.deviations;
+    let own = dense.observations[..compared].iter().map(|own| own.y_name.clone());
     let mut names: Vec<String> = own.collect();
     for variable in
         request.variables.iter().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>()
     {
         names.push(variable);
     }
+    dense.deviations = 0;
     dense.observations =
         names.into_iter().map(|y_name| Observation { y_name, x: x.clone() }).collect();
     let mut simulator = ModelSimulator::new(std::slice::from_ref(&dense))?;
@@ -338,7 +340,7 @@ fn described(experiment: &Experiment, dense: &Experiment, first: usize) -> Vec<C
         "time" => "s".to_owned(),
         name => experiment.model.unit(name).unwrap_or_default(),
     };
-    let measured = experiment.observations.len();
+    let measured = experiment.observations.len() - experiment.deviations;
     let one = |(k, observation): (usize, &Observation)| Curve {
         experiment: experiment.name.clone(),
         y: [observation.y_name.clone(), unit(&observation.y_name)],

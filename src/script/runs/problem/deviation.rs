@@ -31,7 +31,14 @@ pub(super) fn parameter(name: &str) -> String {
 }
 
 /// The formulas of an experiment that contain more than their output.
-pub(super) fn formulas(entry: &ExperimentEntry, table: &MatFile) -> Vec<Formula> {
+///
+/// # Errors
+///
+/// Formulas that are no expressions, and those of delayed outputs, at their places.
+pub(super) fn formulas(
+    entry: &ExperimentEntry,
+    table: &MatFile,
+) -> Result<Vec<Formula>, Diagnostic> {
     let mut found: Vec<Formula> = Vec::new();
     for (y_name, column) in entry.all_outputs() {
         let Some(SigmaEntry::Words(text)) = &column.sigma else { continue };
@@ -40,16 +47,42 @@ pub(super) fn formulas(entry: &ExperimentEntry, table: &MatFile) -> Vec<Formula>
             continue;
         }
         let way = ["outputs", y_name, "sigma"];
-        // What is no expression is refused with the data.
-        let Ok(mut tree) = expression(text, entry.places.text(&way)) else { continue };
+        let place = entry.places.at(&way);
+        let Ok(mut tree) = expression(text, entry.places.text(&way)) else {
+            return Err(sigma::neither(y_name, text).at(place));
+        };
         let mut names = References(Vec::new());
         names.expression(&mut tree);
-        if !names.0.is_empty() {
-            OwnOutput(y_name).expression(&mut tree);
-            found.push(Formula { y_name: y_name.clone(), tree, place: entry.places.at(&way) });
+        if names.0.is_empty() {
+            continue;
+        }
+        if column.delay.is_some() {
+            let fault = fault!(
+                BAD_OPTION,
+                "the sigma of `{y_name}` is a formula, and the output is delayed, which is not supported"
+            );
+            return Err(fault.help("make the delayed output a variable of the model").at(place));
+        }
+        OwnOutput(y_name).expression(&mut tree);
+        found.push(Formula { y_name: y_name.clone(), tree, place });
+    }
+    Ok(found)
+}
+
+/// The parameters of the problem that formulas of any of its experiments contain.
+pub(super) fn parameters_of(file: &ProblemFile) -> Vec<String> {
+    let mut names = References(Vec::new());
+    let outputs = file.experiment.iter().flat_map(|entry| entry.all_outputs());
+    for (y_name, column) in outputs {
+        let Some(SigmaEntry::Words(text)) = &column.sigma else { continue };
+        if !sigma::is_of_output(text, y_name)
+            && let Ok(mut tree) = expression(text, None)
+        {
+            names.expression(&mut tree);
         }
     }
-    found
+    names.0.retain(|name| file.parameters.contains_key(name));
+    names.0
 }
 
 /// `y` in a formula is its output.
@@ -90,17 +123,12 @@ pub(super) fn declare(
     enclosing: &mut EnclosingClass,
 ) -> Result<Vec<String>, Diagnostic> {
     let Some(flat) = types.filter(|_| !formulas.is_empty()) else { return Ok(Vec::new()) };
-    let of_model = |name: &str| {
-        let base = name.split('[').next().unwrap_or(name);
-        flat.variables.contains_key(name)
-            || flat.variables.keys().any(|own| own.split('[').next() == Some(base))
-    };
     let mut own: Vec<String> = Vec::new();
     for formula in &formulas {
         let mut names = References(Vec::new());
         names.expression(&mut formula.tree.clone());
         for name in names.0 {
-            if of_model(&name) || own.contains(&name) {
+            if is_of_model(&name, flat) || own.contains(&name) {
                 continue;
             }
             if !file.parameters.contains_key(&name) {
@@ -110,6 +138,11 @@ pub(super) fn declare(
         }
     }
     for mut formula in formulas {
+        // A variable alone keeps its unit, which is compared.
+        let is_reference = matches!(formula.tree.kind, ExpressionKind::Reference(_));
+        if is_reference && flat.variables.contains_key(&*print::expression(&formula.tree)) {
+            continue;
+        }
         Renamed(&own).expression(&mut formula.tree);
         let (name, text) = (deviation_of(&formula.y_name), print::expression(&formula.tree));
         // Writing into a String cannot fail.
@@ -117,6 +150,14 @@ pub(super) fn declare(
         enclosing.elements.push((name, format!("the standard deviation of {}", formula.y_name)));
     }
     Ok(own)
+}
+
+/// Whether the model has a variable, or what an element belongs to.
+pub(super) fn is_of_model(name: &str, flat: &FlatModel) -> bool {
+    let base = name.split('[').next().unwrap_or(name);
+    name == "time"
+        || flat.variables.contains_key(name)
+        || flat.variables.keys().any(|own| own.split('[').next() == Some(base))
 }
 
 fn unknown(name: &str, formula: &Formula, (file, flat): (&ProblemFile, &FlatModel)) -> Diagnostic {
@@ -142,17 +183,22 @@ fn unknown(name: &str, formula: &Formula, (file, flat): (&ProblemFile, &FlatMode
 ///
 /// # Errors
 ///
-/// Values that are no numbers.
+/// Values that are no numbers or expressions.
 pub(super) fn declare_parameter(
     (name, role): (&str, &Role),
-    file: &ProblemFile,
+    (file, own): (&ProblemFile, &[String]),
     enclosing: &mut EnclosingClass,
 ) -> Result<String, Diagnostic> {
     let place = file.places.parameter(name);
     let value = match role {
         Role::Free { range: [low, high], .. } => format!("{:e}", 0.5 * (low + high)),
         Role::Fixed(value) => print::expression(&literal(value, name, place).at(place)?),
-        Role::Tied(text) => text.clone(),
+        Role::Tied(text) => {
+            let read = expression(text, file.places.text(&["parameters", name, "tied"]));
+            let mut tree = read.map_err(|error| error.or_at(place))?;
+            Renamed(own).expression(&mut tree);
+            print::expression(&tree)
+        }
     };
     let own = parameter(name);
     _ = writeln!(enclosing.declarations, "  parameter Real {own} = {value};");

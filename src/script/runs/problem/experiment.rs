@@ -323,6 +323,12 @@ impl Source<'_> {
         })
     }
 
+    fn setting<'s>(&'s self, of_any_deviation: &'s [String]) -> parameters::Setting<'s> {
+        let Source { file, entry, label, segment, free, .. } = *self;
+        let of_deviations = &[];
+        parameters::Setting { file, entry, label, segment, free, of_deviations, of_any_deviation }
+    }
+
     /// The class around the model, loaded.
     pub(super) fn class(
         &self,
@@ -330,14 +336,16 @@ impl Source<'_> {
         x: &Abscissa,
         notes: &mut Notes,
     ) -> Result<Class, Vec<Diagnostic>> {
-        let Source { file, entry, label, segment, free, .. } = *self;
+        let Source { file, entry, segment, .. } = *self;
         let base =
             Base::of(&file.model, file.places.text(&["model"])).map_err(|error| vec![error])?;
         let here = (self.number, entry.places.at(&["data"]));
         let mut enclosing = EnclosingClass::default();
-        let setting = parameters::Setting { file, entry, label, segment, free, of_deviations: &[] };
-        let formulas = deviation::formulas(entry, self.table);
-        let plain = types_of(session, &file.model, (!formulas.is_empty(), setting.needs_types()))?;
+        let of_any_deviation = deviation::parameters_of(file);
+        let setting = self.setting(&of_any_deviation);
+        let formulas = deviation::formulas(entry, self.table).map_err(|error| vec![error])?;
+        let has_formulas = !formulas.is_empty() || !of_any_deviation.is_empty();
+        let plain = types_of(session, &file.model, (has_formulas, setting.needs_types()))?;
         let types = plain.as_ref().map(|own| &own.model);
         let of_deviations = deviation::declare(formulas, file, types, &mut enclosing)
             .map_err(|error| vec![error])?;

@@ -161,7 +161,8 @@ fn values(
     unit: &Imported,
 ) -> Result<(Given, Vec<(usize, String)>), Diagnostic> {
     let Source { file, entry, label, segment, free, .. } = *source;
-    let setting = Setting { file, entry, label, segment, free, of_deviations: &[] };
+    let setting =
+        Setting { file, entry, label, segment, free, of_deviations: &[], of_any_deviation: &[] };
     let (mut given, mut names) = (Given::default(), Vec::new());
     for (name, parameter) in &file.parameters {
         let place = file.places.parameter(name);

@@ -33,8 +33,10 @@ pub(super) struct Setting<'a> {
     /// The part of the experiment.
     pub segment: &'a Segment,
     pub free: &'a [Free],
-    /// Parameters that only formulas for deviations have.
+    /// Parameters that only formulas for deviations of this experiment have.
     pub of_deviations: &'a [String],
+    /// Parameters that formulas for deviations of any experiment have.
+    pub of_any_deviation: &'a [String],
 }
 
 /// The types of the variables of a model, where it is known.
@@ -74,8 +76,14 @@ impl Setting<'_> {
             if self.of_deviations.contains(name) {
                 let free = matches!(role, Role::Free { .. });
                 let free = free.then(|| self.free_place(name, parameter).at(place)).transpose()?;
-                let own = deviation::declare_parameter((name, &role), self.file, enclosing)?;
+                let known = (self.file, self.of_deviations);
+                let own = deviation::declare_parameter((name, &role), known, enclosing)?;
                 names.extend(free.map(|free| (free, own)));
+                continue;
+            }
+            let is_elsewhere = self.of_any_deviation.contains(name)
+                && types.is_some_and(|flat| !deviation::is_of_model(name, flat));
+            if is_elsewhere {
                 continue;
             }
             let value = match role {

@@ -73,7 +73,7 @@ fn shared(words: &str) -> Option<String> {
 /// The variable that has the deviation: that of the class around the model, or one of the model.
 fn of_model(name: &str, words: &str, model: &dyn Model) -> Option<String> {
     let own = deviation_of(name);
-    let mut both = [own, words.to_owned()].into_iter();
+    let mut both = [own, words.trim().to_owned()].into_iter();
     both.find(|variable| model.unit(variable).is_some())
 }
 
@@ -90,18 +90,21 @@ pub(super) fn positive(name: &str, value: f64) -> Result<(), Fault> {
     Ok(())
 }
 
+/// What is neither a column nor a formula.
+pub(super) fn neither(name: &str, text: &str) -> Fault {
+    fault!(
+        BAD_OPTION,
+        "the sigma of `{name}` is `{text}`, which is neither a column of the data nor a \
+         formula in terms of the output, of variables of the model and of parameters";
+        help: "write a number, the name of a column, \"estimate\", or a formula such as \"0.01 + 0.05*abs({name})\""
+    )
+}
+
 fn formula(name: &str, text: &str) -> Result<SigmaFormula, Fault> {
-    let not = || {
-        fault!(
-            BAD_OPTION,
-            "the sigma of `{name}` is `{text}`, which is neither a column of the data nor a \
-             formula in terms of the output, of variables of the model and of parameters";
-            help: "write a number, the name of a column, \"estimate\", or a formula such as \"0.01 + 0.05*abs({name})\""
-        )
-    };
-    let tree = crate::syntax::parse_expression(SourceId::NONE, text).map_err(|_| not())?;
+    let tree = crate::syntax::parse_expression(SourceId::NONE, text);
+    let tree = tree.map_err(|_| neither(name, text))?;
     if value(&tree, name, 1.0).is_none() {
-        return Err(not());
+        return Err(neither(name, text));
     }
     let own = name.to_owned();
     let value = Arc::new(move |y: f64| value(&tree, &own, y).unwrap_or(f64::NAN));
