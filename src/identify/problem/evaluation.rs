@@ -513,14 +513,13 @@ fn wrong_deviation(problem: &Problem, row: &[f64]) -> Option<Failed> {
         let (own, others) = rest.split_at(series.x.len().min(rest.len()));
         rest = others;
         let is_deviation = matches!(series.role, super::Role::Deviation(_));
-        let wrong = own.iter().position(|sigma| sigma.is_nan() || *sigma <= 0.0);
-        if let Some(at) = wrong.filter(|_| is_deviation) {
-            let (name, x) = (&series.x_name, series.x[at]);
+        let is_wrong = own.iter().any(|sigma| sigma.is_nan() || *sigma <= 0.0);
+        if is_deviation && is_wrong {
+            // The same words for all individuals, which are counted by them.
             let cause = format!(
-                "{}: the {} is {} at {name} = {x}, but a sigma must be positive",
+                "{}: the sigma `{}` is not positive everywhere",
                 series.experiment,
-                series.y_name.trim_matches('\''),
-                own[at]
+                series.y_name.trim_matches('\'')
             );
             return Some(Failed::new(super::FailureKind::Points, cause, 1.0));
         }

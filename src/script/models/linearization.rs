@@ -58,6 +58,7 @@ fn linearized_variant(
     let mut inputs = Vec::new();
     let model = session
         .vary_current(|model, flat| with_states_for_inputs(model, flat.clone(), &mut inputs))?;
+    LinearPart::refuse(model.program.sorted()).at(at).map_err(one)?;
     let done =
         simulation::simulate(session, &model, options).map_err(|unfinished| one(unfinished.why))?;
     let time = done.table.time.last().copied().unwrap_or(0.0);
@@ -65,7 +66,6 @@ fn linearized_variant(
         |name: &str| Ok::<f64, Fault>(done.table.column(name)?.last().copied().unwrap_or(f64::NAN));
     let y0: Result<Vec<f64>, Fault> = model.state_names().map(|name| last(name)).collect();
     let y0 = y0.at(at).map_err(one)?;
-    LinearPart::refuse(model.program.sorted()).at(at).map_err(one)?;
     let system = session.system_with_values(&model).map_err(one)?;
     let settings = simulation::settings(&model.program.experiment(), options).at(at);
     let settings = Settings { output: OutputGrid::At(vec![time]), ..settings.map_err(one)? };

@@ -192,3 +192,23 @@ const SMALL: [(&str, &str, Formula); 8] = [
         |s| s / (s * 4.0 + 2.0),
     ),
 ];
+
+/// Events before the point have changed the discrete variables; delays are refused.
+#[test]
+fn a_model_is_linearized_with_the_discrete_values_of_its_point() {
+    let model = "model K\n  input Real u(start = 0);\n  output Real y = x;\n  \
+        Real x(start = 1, fixed = true);\n  discrete Real k(start = 1, fixed = true);\nequation\n  \
+        when time >= 1 then\n    k = 3;\n  end when;\n  der(x) = -k*x + u;\nend K;\n";
+    let delayed = "model D\n  input Real u(start = 0);\n  output Real y = delay(x, 1);\n  \
+        Real x(start = 1, fixed = true);\nequation\n  der(x) = u - x;\nend D;\n";
+    let direct = "model G\n  input Real u(start = 0);\n  output Real y = 7*u;\nend G;\n";
+    let here = folder(&[("K.mo", model), ("D.mo", delayed), ("G.mo", direct)]);
+    for (time, pole) in [("0.5", "  -1 "), ("2", "  -3 ")] {
+        let (code, out, errors) = gapi(&here, &["linearize", "K.mo", "--stop-time", time]);
+        assert!(code == 0 && out.contains(pole), "{time}: {out}{errors}");
+    }
+    let (code, _, errors) = gapi(&here, &["linearize", "D.mo"]);
+    assert!(code == 1 && errors.contains("`delay` and `spatialDistribution`"), "{errors}");
+    let (code, out, errors) = gapi(&here, &["linearize", "G.mo"]);
+    assert!(code == 0 && out.contains("static gain of y/u: 7"), "{out}{errors}");
+}

@@ -82,7 +82,26 @@ pub(super) fn parameters_of(file: &ProblemFile) -> Vec<String> {
         }
     }
     names.0.retain(|name| file.parameters.contains_key(name));
+    add_tied(&mut names.0, file, |_| true);
     names.0
+}
+
+/// Adds the parameters of the problem that those among these depend on that are tied.
+fn add_tied(names: &mut Vec<String>, file: &ProblemFile, is_meant: impl Fn(&str) -> bool) {
+    let mut next = 0;
+    while let Some(name) = names.get(next) {
+        next += 1;
+        let text = file.parameters.get(name).and_then(|own| own.tied.as_deref());
+        let Some(Ok(mut tree)) = text.map(|text| expression(text, None)) else { continue };
+        let mut found = References(Vec::new());
+        found.expression(&mut tree);
+        for name in found.0 {
+            let is_new = file.parameters.contains_key(&name) && !names.contains(&name);
+            if is_new && is_meant(&name) {
+                names.push(name);
+            }
+        }
+    }
 }
 
 /// `y` in a formula is its output.
@@ -137,6 +156,7 @@ pub(super) fn declare(
             own.push(name);
         }
     }
+    add_tied(&mut own, file, |name| !is_of_model(name, flat));
     for mut formula in formulas {
         // A variable alone keeps its unit, which is compared.
         let is_reference = matches!(formula.tree.kind, ExpressionKind::Reference(_));

@@ -90,7 +90,7 @@ impl Comparison<'_> {
         bail!(
             BAD_OPTION,
             "the sigma of `{y_name}` is in {own}, but `{y_name}` is in {of}";
-            help: "write a formula that converts it, as `\"{deviation}*1000\"`"
+            help: "write a formula that converts it, with the factor, in place of the variable alone"
         )
     }
 

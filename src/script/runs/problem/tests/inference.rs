@@ -436,7 +436,7 @@ fn sigma_is_a_formula_with_estimated_parameters() {
         let found = solution.likelihood.negative_log_likelihood.unwrap();
         assert!((found + 94.5096237308639).abs() < 1e-6, "{found}\n{text}");
         assert!(solution.outcome.ending.kind == EndingKind::Minimum, "{text}");
-        assert!(solution.likelihood.chi_square.is_some(), "{text}");
+        assert!(solution.likelihood.chi_square.is_none(), "fitted deviations test nothing\n{text}");
         let points: usize = solution.series.iter().map(|own| own.points.len()).sum();
         assert_eq!(points, 40, "deviations are no data\n{text}");
         // Where -log L rises by half of 3.84 in the profile.
@@ -494,5 +494,48 @@ fn an_experiment_that_does_not_come_to_rest_is_named() {
         assert!((value(&solution, "k") / k - 1.0).abs() < 0.05, "{}", solution.text());
         let said = solution.text();
         assert_eq!(said.contains("step: the model is not at rest"), !is_at_rest, "{said}");
+    }
+}
+
+/// Formulas for sigma as users write them: a parameter in one experiment alone, tied ones, and what
+/// cannot be meant.
+#[test]
+fn formulas_of_sigma_are_read_or_refused_with_the_reason() {
+    let model = "model M\n  parameter Real k = 1;\n  Real y(start = 2, fixed = true, unit = \"V\");\n  \
+                 Real mv(unit = \"mV\") = 100;\nequation\n  der(y) = -k*y;\nend M;\n";
+    let rows: String = (1..=9)
+        .map(|row| {
+            format!("{row},{}\n", 2.0 * f64::exp(-0.3 * f64::from(row)) + 0.01 * f64::from(row % 2))
+        })
+        .collect();
+    let files = |parameters: &str, sigmas: [&str; 2]| {
+        let experiment = |sigma: &str| {
+            format!(
+                "[[experiment]]\ndata = \"d.csv\"\noutputs = {{ y = {{ column = \"y\", sigma = \"{sigma}\" }} }}\n"
+            )
+        };
+        let problem = format!(
+            "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\nk = {{ min = 0.1, max = 2 }}\n\
+             {parameters}\n{}{}",
+            experiment(sigmas[0]),
+            experiment(sigmas[1])
+        );
+        [("p.toml", problem), ("M.mo", model.to_owned()), ("d.csv", format!("time,y\n{rows}"))]
+    };
+    let range = "a = { min = 1e-4, max = 1 }\nb = { min = 1e-4, max = 1 }";
+    let solution = solved(&files(range, ["a", "b*y"]));
+    assert!((value(&solution, "k") - 0.3).abs() < 0.02, "{}", solution.text());
+    let tied = "a = { min = 1e-4, max = 1 }\nb = { tied = \"2*a\" }";
+    let solution = solved(&files(tied, ["b*y", "b*y + a*time"]));
+    assert!((value(&solution, "k") - 0.3).abs() < 0.02, "{}", solution.text());
+    for (sigma, said) in [
+        ("a+", "which is neither a column of the data nor a formula"),
+        ("mv", "is in mV, but `y` is in V"),
+        ("a*wrong", "contains `wrong`"),
+        ("-a", "is not positive everywhere"),
+    ] {
+        let mut session = Session::new(Box::new(world(&files(range, [sigma, "a + b"]))));
+        let errors = solve(&mut session, Path::new("p.toml"), &RunOptions::default()).unwrap_err();
+        assert!(errors[0].message.contains(said), "{sigma}: {}", errors[0].message);
     }
 }
