@@ -3,7 +3,9 @@
 use super::options::Global;
 use super::session;
 use crate::diag::{Diagnostic, Fault};
+use crate::fault;
 use crate::plot::{self, Axis, Figure, Mark, Panel};
+use crate::registry::BAD_OPTION;
 use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
@@ -70,6 +72,13 @@ fn run(session: &mut Session, arguments: &EstimateArgs) -> Result<(), Vec<Diagno
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let given = (arguments.values.as_deref(), arguments.experiment.as_deref());
     let found = estimate(session, &arguments.problem, given)?;
+    let own = |file: &PathBuf| session.world.absolute(file);
+    let read: Vec<PathBuf> = found.read.iter().map(own).collect();
+    let written = [&arguments.output, &arguments.figure].into_iter().flatten();
+    if let Some(path) = written.into_iter().find(|path| read.contains(&own(path))) {
+        let fault = fault!(BAD_OPTION, "`{}` is read by this command", path.display());
+        return Err(one(fault.help("write the states to another file")));
+    }
     session.print(&last_values(&found));
     if let Some(path) = &arguments.output {
         write(session, path, &found.table).map_err(one)?;

@@ -9,6 +9,10 @@ use crate::registry::{self, Options};
 
 /// Evaluations of one fit.
 const BUDGET: u64 = 400;
+/// So many of them a descent to its end may take; chosen, not measured.
+const BUDGETS: usize = 8;
+/// A budget that lowers the sum by less than this part is that of a descent at its end.
+const ENDED: f64 = 1e-4;
 
 /// Fits again and again about the same problem.
 pub(crate) struct Refit<'a> {
@@ -92,6 +96,20 @@ impl<'a> Refit<'a> {
             search.tell(&batch, &answers);
         }
         Ok(Some(best))
+    }
+
+    /// The end of a descent, which may take several budgets; `None` where it does not end.
+    fn to_end(&mut self, start: &[f64]) -> Result<Option<Fitted>, Fault> {
+        let mut before: Option<Fitted> = None;
+        for _ in 0..BUDGETS {
+            let from = before.as_ref().map_or(start, |(values, _)| values).to_vec();
+            let Some(found) = self.from(&from, None)? else { return Ok(None) };
+            if before.as_ref().is_some_and(|(_, sum)| *sum - found.1 <= ENDED * sum) {
+                return Ok(Some(found));
+            }
+            before = Some(found);
+        }
+        Ok(None)
     }
 
     /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
@@ -186,7 +204,8 @@ impl Run {
     }
 
     /// What other simulators of the same points reach by least squares from the best point, and the
-    /// simulations that it took; `None` where they cannot simulate that point.
+    /// simulations that it took; `None` where they cannot simulate that point. With `others`, descents from
+    /// these too are followed to their ends, and `None` also says that none has one.
     ///
     /// # Errors
     ///
@@ -194,23 +213,37 @@ impl Run {
     pub fn best_with(
         &mut self,
         simulator: MakeSimulator,
+        others: Option<&[Vec<f64>]>,
         processors: &Processors,
     ) -> Result<(Option<Best>, u64), Fault> {
         let own = std::mem::replace(&mut self.problem.simulator, simulator);
-        let found = self.best_elsewhere(processors);
+        let found = self.best_elsewhere(others, processors);
         self.problem.simulator = own;
         found
     }
 
-    fn best_elsewhere(&self, processors: &Processors) -> Result<(Option<Best>, u64), Fault> {
+    fn best_elsewhere(
+        &self,
+        others: Option<&[Vec<f64>]>,
+        processors: &Processors,
+    ) -> Result<(Option<Best>, u64), Fault> {
         let Some(best) = &self.observed.best else { return Ok((None, 0)) };
         let mut evaluation = Evaluation::on(&self.problem, processors)?;
         evaluation.reweigh(&self.problem, self.evaluation.weights().to_vec());
         evaluation.cancel_by(self.evaluation.cancel());
         let (values, simulations) = match Refit::new(&self.problem, &evaluation) {
             Some(mut refit) => {
-                let found = refit.from(&best.values, None)?;
-                (found.map(|(values, _)| values), refit.simulations)
+                let mut least: Option<Fitted> = None;
+                if others.is_none() {
+                    least = refit.from(&best.values, None)?;
+                }
+                let ends = others.map(|others| std::iter::once(&best.values).chain(others));
+                for start in ends.into_iter().flatten() {
+                    let found = refit.to_end(start)?;
+                    let is_less = |own: &Fitted| least.as_ref().is_none_or(|known| own.1 < known.1);
+                    least = found.filter(is_less).or(least);
+                }
+                (least.map(|(values, _)| values), refit.simulations)
             }
             None => (Some(best.values.clone()), 1),
         };

@@ -146,6 +146,14 @@ impl Solution {
         if self.outcome.ending.kind == EndingKind::Minimum {
             let limit = statistics.limit_of_squares();
             self.outcome.other_minima = ending::other_minima(&self.outcome.descents, limit);
+            if ErrorModel::of(&run.problem).is_likelihood() {
+                // The sums of the descents are N G with N ln G = -2 log L.
+                let n = statistics.residuals.len() as f64;
+                for other in &mut self.outcome.other_minima {
+                    let ratio = other.objective / statistics.searched;
+                    other.objective = best.fitness + 0.5 * n * elementary::ln(ratio);
+                }
+            }
         }
         self.effort.simulations_for_statistics =
             statistics.simulations + run.conclusion.simulations + self.outcome.ending.simulations;

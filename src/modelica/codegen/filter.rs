@@ -230,17 +230,15 @@ fn held_state(pool: &mut Pool, sorted: &CausalizedDae, uncertain: &[usize]) -> O
     let mut forward = seeded(pool, &mut next, &states);
     through_blocks(&mut forward, &sorted.event_blocks, &mut Vec::new());
     let (dae, model) = (&sorted.dae, &sorted.dae.name);
-    for reinit in &dae.events.reinits {
-        let state = sorted.aliases[reinit.state.0 as usize].map_or(reinit.state, |own| own.of);
-        if states.contains(&state) || !forward.row(reinit.value).is_empty() {
-            let name = &dae.variable(reinit.state).name;
-            return Some(fault!(
-                NO_FILTER,
-                "`{model}` cannot be filtered: `reinit` sets `{name}`, whose uncertainty would jump \
-                 with it";
-                help: "describe the jump by a fast continuous change, or give noise to other states"
-            ));
-        }
+    if let Some(reinit) = dae.events.reinits.first() {
+        // Also a state that is certain before: the time of the event may not be.
+        let name = &dae.variable(reinit.state).name;
+        return Some(fault!(
+            NO_FILTER,
+            "`{model}` cannot be filtered: `reinit` sets `{name}`, whose uncertainty would jump \
+             with it";
+            help: "describe the jump by a fast continuous change"
+        ));
     }
     let is_held = |own: &VarId| {
         let variable = dae.variable(*own);

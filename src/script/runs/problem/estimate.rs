@@ -11,7 +11,7 @@ use crate::models::imported::refuse_as_text;
 use crate::registry::BAD_OPTION;
 use crate::results::{ResultTable, Series, Values};
 use crate::source::Span;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// States from data.
 pub struct Estimated {
@@ -25,6 +25,8 @@ pub struct Estimated {
     pub shown: Vec<[Option<String>; 3]>,
     /// -log L of the measurements.
     pub negative_log_likelihood: f64,
+    /// The files that were read: the problem, its data and the values.
+    pub read: Vec<PathBuf>,
 }
 
 /// Estimates the states of an experiment of the problem in the file `path`, that of this name or the only
@@ -54,13 +56,17 @@ pub fn estimate(
     }
     let (experiments, free, notes) = filtered_experiments(session, &mut file, path)?;
     notes.iter().for_each(|note| note.say(session));
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut read: Vec<PathBuf> = file.experiment.iter().map(|own| folder.join(&own.data)).collect();
+    read.extend(std::iter::once(path).chain(values).map(Path::to_owned));
     let known = match values {
         Some(values) => found(session, values).map_err(one)?,
         None => Vec::new(),
     };
     let values = given(&free, &known).map_err(one)?;
     let chosen = chosen(experiments, name).map_err(one)?;
-    states(&chosen, &values).map_err(one)
+    let found = states(&chosen, &values).map_err(one)?;
+    Ok(Estimated { read, ..found })
 }
 
 /// The values in a result of `gapi identify`.
@@ -163,6 +169,7 @@ fn states(chosen: &FilteredExperiment, values: &[f64]) -> Result<Estimated, Faul
         table: made.table,
         shown: made.shown,
         negative_log_likelihood: log,
+        read: Vec::new(),
     })
 }
 

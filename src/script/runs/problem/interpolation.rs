@@ -52,7 +52,7 @@ pub(super) fn try_others(
         let change = |file: &mut ProblemFile| set(file, &names, assumed.other());
         let other = again(session, Change::Entries(&change))?;
         let processors = session.world.processors();
-        let (found, simulations) = run.best_with(other.problem.simulator, &processors)?;
+        let (found, simulations) = run.best_with(other.problem.simulator, None, &processors)?;
         solution.effort.simulations_for_statistics += simulations;
         if session.world.interrupted() {
             let sentence = "Other interpolations of the inputs were not tried: the run was stopped \

@@ -4,7 +4,9 @@ use super::file::{Filtering, ProblemFile};
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
-use crate::identify::problem::{EndingKind, NoiseComparison, Problem, Run, Solution};
+use crate::identify::problem::{
+    EndingKind, Finding, FindingKind, NoiseComparison, Problem, Run, Solution, SolvedParameter,
+};
 
 /// Compares a fit with what its densities `names` add, and says it.
 ///
@@ -25,9 +27,17 @@ pub(super) fn compare(
         let change = |file: &mut ProblemFile| file.filtering = Filtering::WithoutNoise;
         let other = again(session, Change::Entries(&change))?;
         let processors = session.world.processors();
-        let (found, simulations) = run.best_with(other.problem.simulator, &processors)?;
+        let starts = wider(solution);
+        let (found, simulations) =
+            run.best_with(other.problem.simulator, Some(&starts), &processors)?;
         solution.effort.simulations_for_statistics += simulations;
         without = found.map(|best| best.fitness);
+        if without.is_none() {
+            let sentence = "Whether the data need the process noise is not known: the fit without it \
+                            does not come to an end.";
+            let finding = Finding::new(FindingKind::ProcessNoise, sentence.to_owned());
+            solution.findings.push(finding);
+        }
     }
     let change = |file: &mut ProblemFile| file.filtering = Filtering::Simulated;
     let other = again(session, Change::Entries(&change))?;
@@ -36,6 +46,24 @@ pub(super) fn compare(
     let simulated = errors(&other.problem, &values)?;
     solution.judge_noise(&NoiseComparison { names, without, simulated });
     Ok(())
+}
+
+/// The begin of the names of estimated errors of measurement.
+const SIGMA: &str = "sigma of ";
+
+/// Starts at which the errors of measurement are larger: without process noise they have to explain what
+/// it explained, and from far away a descent may end beside the minimum.
+fn wider(solution: &Solution) -> Vec<Vec<f64>> {
+    const FACTORS: [f64; 2] = [10.0, 100.0];
+    let has_sigma = solution.parameters.iter().any(|own| own.name.starts_with(SIGMA));
+    let start = |factor: &f64| {
+        let value = |own: &SolvedParameter| match own.name.starts_with(SIGMA) {
+            true => (own.value * factor).clamp(own.range[0], own.range[1]),
+            false => own.value,
+        };
+        solution.parameters.iter().map(value).collect()
+    };
+    FACTORS.iter().filter(|_| has_sigma).map(start).collect()
 }
 
 /// The root mean squared residuals of the measured series.
