@@ -181,7 +181,7 @@ fn label(series: &SolvedSeries) -> String {
 
 /// Probability of a larger likelihood ratio where so many densities are 0.
 fn tail(ratio: f64, count: usize) -> f64 {
-    let mut weight = 0.5_f64.powi(count as i32);
+    let mut weight = elementary::powi(0.5, count as i32);
     let mut sum = if ratio > 0.0 { 0.0 } else { weight };
     for j in 1..=count {
         weight *= (count - j + 1) as f64 / j as f64;

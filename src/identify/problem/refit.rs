@@ -99,7 +99,7 @@ impl<'a> Refit<'a> {
     }
 
     /// The end of a descent, which may take several budgets; `None` where it does not end.
-    fn to_end(&mut self, start: &[f64]) -> Result<Option<Fitted>, Fault> {
+    fn followed(&mut self, start: &[f64]) -> Result<Option<Fitted>, Fault> {
         let mut before: Option<Fitted> = None;
         for _ in 0..BUDGETS {
             let from = before.as_ref().map_or(start, |(values, _)| values).to_vec();
@@ -239,7 +239,7 @@ impl Run {
                 }
                 let ends = others.map(|others| std::iter::once(&best.values).chain(others));
                 for start in ends.into_iter().flatten() {
-                    let found = refit.to_end(start)?;
+                    let found = refit.followed(start)?;
                     let is_less = |own: &Fitted| least.as_ref().is_none_or(|known| own.1 < known.1);
                     least = found.filter(is_less).or(least);
                 }

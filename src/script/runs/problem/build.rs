@@ -162,6 +162,9 @@ pub(super) struct FilteredExperiment {
     pub states: Vec<[String; 2]>,
 }
 
+/// Experiments, the free parameters of their problem, and what should be known of the data.
+type Filterable = (Vec<FilteredExperiment>, Vec<Free>, Vec<Note>);
+
 /// The experiments of a problem with process noise, its free parameters, and notes.
 ///
 /// # Errors
@@ -171,7 +174,7 @@ pub(super) fn filtered_experiments(
     session: &mut Session,
     file: &mut ProblemFile,
     path: &Path,
-) -> Result<(Vec<FilteredExperiment>, Vec<Free>, Vec<Note>), Vec<Diagnostic>> {
+) -> Result<Filterable, Vec<Diagnostic>> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
     let around = session.execution.read_problem(Some(folder.to_owned()));

@@ -5,6 +5,7 @@
 use super::enclosing_class::{EnclosingClass, own_name};
 use super::file::{ColumnEntry, ExperimentEntry, Filtering, NoiseEntry, ProblemFile, SigmaEntry};
 use crate::diag::{At as _, Diagnostic, Fault};
+use crate::elementary;
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::models::filter::Noise;
 use crate::registry::BAD_OPTION;
@@ -210,7 +211,7 @@ fn no_range(state: &str) -> Fault {
 fn change(series: &[Series], name: &str, unit: &str) -> Option<(f64, f64)> {
     let own = series.iter().find(|own| own.y_name == name);
     let own = own.or_else(|| series.iter().find(|own| own.y_unit == unit))?;
-    let squares = own.y.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
+    let squares = own.y.windows(2).map(|pair| elementary::powi(pair[1] - pair[0], 2));
     let count = squares.len().max(1) as f64;
     let size = (squares.sum::<f64>() / count).sqrt();
     let (first, last) = (own.x.first()?, own.x.last()?);
