@@ -108,7 +108,7 @@ fn last_values(found: &Estimated) -> String {
         let [Some(name), Some(sd), _] = own else { continue };
         let unit = unit_of(&found.table, name);
         let (value, sd) = (significant(last(name), 6), significant(last(sd), 3));
-        text += &format!("  {name} = {value} ± {sd} {unit}").trim_end();
+        text += format!("  {name} = {value} ± {sd} {unit}").trim_end();
         text.push('\n');
     }
     text
