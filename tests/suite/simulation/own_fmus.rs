@@ -465,7 +465,7 @@ fn a_limit_of_time_keeps_what_was_computed() {
     let export = ["export-fmu", "Long.mo", "--model", "Long", "-o", "unit.fmu"];
     let (code, out, errors) = exporting(&here, &export);
     assert_eq!(code, 0, "{out}{errors}");
-    let limits = ["--time-limit", "6", "--intervals", "1000000"];
+    let limits = ["--time-limit", "2", "--intervals", "1000000"];
     for method in ["dassl", "co-simulation"] {
         let unit = ["simulate", "unit.fmu", "--allow-external", "--output", "r.csv"];
         let (code, out, errors) =
