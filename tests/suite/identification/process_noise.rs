@@ -1,36 +1,10 @@
 //! Process noise: fits whose predictions come from a Kalman filter, against the same likelihoods
 //! maximized by SciPy.
 
+use crate::support::identified::{assert_near, parameter, refused, solved};
 use crate::support::program::{folder, gapi};
 use serde_json::Value;
 use std::fmt::Write as _;
-
-/// The result of a problem, and everything that was printed.
-fn solved(files: &[(&str, &str)]) -> (Value, String) {
-    let folder = folder(files);
-    let (code, out, error) = gapi(&folder, &["identify", "p.toml", "--out", "o", "--plain"]);
-    assert_eq!(code, 0, "{out}{error}");
-    let text = std::fs::read_to_string(folder.path().join("o/result.json")).unwrap();
-    (serde_json::from_str(&text).unwrap(), out + &error)
-}
-
-fn refused(files: &[(&str, &str)]) -> String {
-    let (code, out, error) = gapi(&folder(files), &["identify", "p.toml", "--out", "o", "--plain"]);
-    assert_ne!(code, 0, "{out}");
-    error
-}
-
-/// Value and standard error of a parameter.
-fn parameter(result: &Value, name: &str) -> [f64; 2] {
-    let all = result["parameters"].as_array().unwrap();
-    let found = all.iter().find(|own| own["name"] == name).unwrap_or_else(|| panic!("{name}"));
-    ["value", "deviation"].map(|key| found[key].as_f64().unwrap_or(f64::NAN))
-}
-
-#[track_caller]
-fn assert_near(found: f64, expected: f64, relative: f64) {
-    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
-}
 
 /// A room whose losses vary: C dT/dt = u − T/R + w, dw/dt = −w/4 with noise.
 const ROOM: &str = "model Room
@@ -168,7 +142,8 @@ fn what_a_filter_cannot_do_is_refused_with_its_place() {
         let problem = change(room_problem("0.1", ", sigma = 0.1"));
         refused(&[("M.mo", ROOM), ("d.csv", &data), ("p.toml", &problem)])
     };
-    let cases: [(&str, &str, &str); 6] = [
+    let cases: [(&str, &str, &str); 7] = [
+        ("w = 0.1", "W = 0.1", "did you mean `w`?"),
         ("w = 0.1", "u = 0.1", "`u` is not a state"),
         ("w = 0.1", "w = -1", "the noise of `w` is -1"),
         ("w = 0.1", "w = { min = 1 }", "must have either `min` and `max`, or `value`"),

@@ -1,37 +1,10 @@
 //! Spectra of models against formulas and against independent fits of the same numbers.
 
-use crate::support::program::{folder, gapi};
+use crate::support::identified::{assert_near, parameter, refused, solved};
 use gapilib::internals::frequency::Number;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-
-/// The result of a problem, and everything that was printed.
-fn solved(files: &[(&str, &str)]) -> (Value, String) {
-    let folder = folder(files);
-    let (code, out, error) = gapi(&folder, &["identify", "p.toml", "--out", "o", "--plain"]);
-    assert_eq!(code, 0, "{out}{error}");
-    let text = std::fs::read_to_string(folder.path().join("o/result.json")).unwrap();
-    (serde_json::from_str(&text).unwrap(), out + &error)
-}
-
-fn refused(files: &[(&str, &str)]) -> String {
-    let (code, out, error) = gapi(&folder(files), &["identify", "p.toml", "--out", "o", "--plain"]);
-    assert_ne!(code, 0, "{out}");
-    error
-}
-
-/// Value and standard error of a parameter; an exact fit has none.
-fn parameter(result: &Value, name: &str) -> [f64; 2] {
-    let all = result["parameters"].as_array().unwrap();
-    let found = all.iter().find(|own| own["name"] == name).unwrap();
-    ["value", "deviation"].map(|key| found[key].as_f64().unwrap_or(f64::NAN))
-}
-
-#[track_caller]
-fn assert_near(found: f64, expected: f64, relative: f64) {
-    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
-}
 
 fn tanh(root: Number) -> Number {
     let small = (-2.0 * root).exp();

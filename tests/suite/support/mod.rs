@@ -7,6 +7,7 @@ pub(crate) mod flat_class;
 pub(crate) mod guide;
 pub(crate) mod guide_charts;
 pub(crate) mod guide_diagrams;
+pub(crate) mod identified;
 pub(crate) mod program;
 pub(crate) mod shipped;
 pub(crate) mod simulated;
