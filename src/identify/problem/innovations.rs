@@ -163,7 +163,7 @@ impl Solution {
         if !words.is_empty() {
             let sentence = format!(
                 "RMSE is that of predictions of one sample from all earlier ones. Simulations from the \
-                 start, which see no measurements, have a larger one: {}.",
+                 start, which see no measurements, have: {}.",
                 words.join("; ")
             );
             let finding = Finding::new(FindingKind::ProcessNoise, sentence);

@@ -358,16 +358,7 @@ impl Filter<'_> {
             let line = format!("reinit({}, {});", covariance(0, pair), covariance(m, pair));
             self.line(&line);
         }
-        for k in 0..m {
-            let line = format!(
-                "{} = {};\n{} = sqrt({});",
-                prediction(k),
-                before(k),
-                deviation(k),
-                variance(k)
-            );
-            self.line(&line);
-        }
+        self.predictions();
         if begins_uncertain {
             self.line(&format!("{FIRST} = false;"));
         }
@@ -375,14 +366,14 @@ impl Filter<'_> {
         for name in std::mem::take(&mut self.channels) {
             self.line(&format!("pre({name}) = {name};"));
         }
-        for k in 0..m {
-            let line = format!(
-                "{} = {};\n{} = sqrt({});",
-                prediction(k),
-                before(k),
-                deviation(k),
-                variance(k)
-            );
+        self.predictions();
+    }
+
+    /// What each output is predicted as, and how well.
+    fn predictions(&mut self) {
+        for k in 0..self.measured.len() {
+            let [mean, sd] = [prediction(k), deviation(k)];
+            let line = format!("{mean} = {};\n{sd} = sqrt({});", before(k), variance(k));
             self.line(&line);
         }
     }

@@ -7,7 +7,7 @@ use super::file::{ColumnEntry, ExperimentEntry, Filtering, ProblemFile};
 use super::noise::{deviation, of_states};
 use crate::Session;
 use crate::codegen::Program;
-use crate::diag::{At as _, Diagnostic, Fault};
+use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::identify::CompiledModel;
 use crate::identify::problem::{Experiment, Observation, Series, Sigma};
@@ -38,6 +38,7 @@ pub(super) fn filtered(
     for (own, (name, column)) in series.iter().zip(entry.all_outputs()) {
         check(own, name, &column).at(entry.places.at(&["outputs", name])).map_err(one)?;
     }
+    refuse_unknown(file, &experiment)?;
     let noise = of_states(file, (&experiment, &series)).map_err(one)?;
     let outputs = entry.all_outputs().zip(&series).zip(&experiment.observations);
     let measured: Vec<Measured> = outputs
@@ -68,6 +69,18 @@ pub(super) fn filtered(
         notes.add(format!("{experiment}: `{name}` has no `sigma`; it is estimated"));
     }
     Ok((experiment, series, program, found.states))
+}
+
+/// Refuses noise on what the model does not have, at the name.
+fn refuse_unknown(file: &ProblemFile, experiment: &Experiment) -> Result<(), Vec<Diagnostic>> {
+    let model = &experiment.model;
+    let Some(name) = file.noise.keys().find(|name| model.unit(name).is_none()) else {
+        return Ok(());
+    };
+    let names = model.names();
+    let near = suggest::did_you_mean(name, names.iter().map(String::as_str));
+    let fault = fault!(BAD_OPTION, "`{}` has no variable `{name}`", file.model);
+    Err(vec![fault.help_if(near).at(file.places.at(&["noise", name]))])
 }
 
 /// The standard deviation of the measurements of an output.
