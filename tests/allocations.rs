@@ -251,6 +251,7 @@ fn curve(evaluations: u64) -> Problem {
             weight: 1.0,
             relative: Vec::new(),
             sigma: Sigma::Unknown,
+            law: Default::default(),
             column: "V".to_owned(),
             x_column: String::new(),
             rows: Vec::new(),

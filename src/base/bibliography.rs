@@ -267,6 +267,14 @@
 //! - **huber-ronchetti-2009** — P. J. Huber, E. M. Ronchetti: Robust statistics. 2nd edition,
 //!   Wiley, 2009.
 //!
+//! <a id="lange-1989"></a>
+//! - **lange-1989** — K. L. Lange, R. J. A. Little, J. M. G. Taylor: Robust statistical modeling using
+//!   the t distribution. Journal of the American Statistical Association 84, 1989, 881–896.
+//!
+//! <a id="mccullagh-nelder-1989"></a>
+//! - **mccullagh-nelder-1989** — P. McCullagh, J. A. Nelder: Generalized linear models. 2nd edition,
+//!   Chapman and Hall, 1989.
+//!
 //! <a id="wald-wolfowitz-1940"></a>
 //! - **wald-wolfowitz-1940** — A. Wald, J. Wolfowitz: On a test whether two samples are from the same
 //!   population. Annals of Mathematical Statistics 11(2), 1940, 147–162.

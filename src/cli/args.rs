@@ -7,6 +7,7 @@ use super::completions::CompletionsArgs;
 use super::connection::LspArgs;
 use super::estimate::EstimateArgs;
 use super::explain::ExplainArgs;
+use super::export::ExportArgs;
 use super::export_fmu::ExportFmuArgs;
 use super::fmt::FmtArgs;
 use super::fmu::FmuWorkerArgs;
@@ -75,6 +76,8 @@ pub(super) enum Command {
     New(NewArgs),
     /// Import a model in SBML or a problem in PEtab
     Import(ImportArgs),
+    /// Export a problem file to another format
+    Export(ExportArgs),
     /// Run scripts and compare their output with recorded transcripts
     Test(TestArgs),
     /// Execute statements interactively

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 /// Arguments of `gapi import`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Reads models in SBML (levels 2 and 3) and problems in PEtab (version 1). A model becomes a Modelica \
+Reads models in SBML (levels 2 and 3) and problems in PEtab (versions 1 and 2). A model becomes a Modelica \
                         file; a problem becomes a Modelica file, a problem file and tables of data, which \
                         `gapi identify` runs. What is not supported is an error at its place.
 
@@ -93,21 +93,9 @@ pub(super) fn imported(
             vec![(format!("{}.mo", model.name), model.text)]
         }
     };
-    let paths: Vec<PathBuf> = files.iter().map(|(name, _)| folder.join(name)).collect();
-    for (path, (_, content)) in paths.iter().zip(&files) {
-        let differs = path.exists() && fs::read(path).ok().as_deref() != Some(content.as_bytes());
-        if differs && !overwrite {
-            let message = format!("`{}` is there with another content", path.display());
-            let help = "choose another folder with `--out`, or add `--overwrite`";
-            return Err(one(Fault::new(BAD_OPTION, message).help(help)));
-        }
-    }
-    fs::create_dir_all(folder).map_err(|error| one(cannot("create", folder, &error)))?;
-    for (path, (_, content)) in paths.iter().zip(&files) {
-        fs::write(path, content).map_err(|error| one(cannot("write", path, &error)))?;
-    }
+    super::export::write(&files, folder, overwrite)?;
     session.world.grant(Grant::Read(folder));
-    Ok(paths.into_iter().next().unwrap_or_default())
+    Ok(files.first().map_or_else(PathBuf::new, |(name, _)| folder.join(name)))
 }
 
 fn one(fault: Fault) -> Vec<Diagnostic> {
@@ -132,14 +120,16 @@ fn problem(
     let beside = |name: &str| file.with_file_name(name);
     let mut reading = |name: &str| read(&beside(name)).map_err(|fault| fault.message);
     let found = petab::import(&name, text, &mut reading);
-    found.map(|own| own.files).map_err(|refusal| match refusal.file.as_str() {
+    let own = found.map_err(|refusal| match refusal.file.as_str() {
         "" => vec![placed(session, file, text, refusal)],
         other => {
             let other = beside(other);
             let text = read(&other).unwrap_or_default();
             vec![placed(session, &other, &text, refusal)]
         }
-    })
+    })?;
+    own.notes.iter().for_each(|note| session.print(&format!("{note}\n")));
+    Ok(own.files)
 }
 
 /// A refusal at its place in the text of its file.

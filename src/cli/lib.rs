@@ -32,6 +32,7 @@ mod effort;
 pub mod embedding;
 mod estimate;
 mod explain;
+mod export;
 mod export_fmu;
 mod fitted;
 mod fmt;
@@ -191,6 +192,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Estimate(arguments) => estimate::states(arguments, &cli.global),
         Command::New(arguments) => new::new(arguments, &cli.global),
         Command::Import(arguments) => import::import(arguments, &cli.global),
+        Command::Export(arguments) => export::export(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),
         Command::Repl(arguments) => repl::repl(arguments, &cli.global),
         Command::Help(arguments) => help::help(arguments, &Cli::command()),

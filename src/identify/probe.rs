@@ -451,6 +451,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         role: Default::default(),
         relative: Vec::new(),
         sigma: Sigma::Unknown,
+        law: crate::fitness::Law::Normal,
         column: study.y.name.clone(),
         x_column: String::new(),
         rows: Vec::new(),

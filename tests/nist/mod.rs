@@ -182,6 +182,7 @@ impl Dataset {
             weight: 1.0,
             relative: Vec::new(),
             sigma: Sigma::Unknown,
+            law: Default::default(),
             column: "y".into(),
             x_column: String::new(),
             rows: Vec::new(),

@@ -56,6 +56,8 @@ pub(super) struct Experiment {
 pub(super) struct Measured {
     pub(super) outputs: Vec<Output>,
     pub(super) experiments: Vec<Experiment>,
+    /// The lines of measurements without a value.
+    pub(super) empty: Vec<String>,
 }
 
 /// What the rows are read with.
@@ -70,6 +72,7 @@ impl Reader<'_> {
     pub(super) fn read(&self, rows: &[Row]) -> Result<Measured, Refusal> {
         let mut outputs: IndexMap<(usize, String, String), Output> = IndexMap::new();
         let mut experiments: IndexMap<(Option<&str>, &str), Experiment> = IndexMap::new();
+        let mut empty: Vec<String> = Vec::new();
         for row in rows {
             let condition = self.condition(row, row.required("simulationConditionId")?)?;
             let rest = row.get("preequilibrationConditionId");
@@ -89,7 +92,10 @@ impl Reader<'_> {
             if time.is_nan() || time < 0.0 {
                 return Err(row.wrong("the time of a measurement is missing or negative"));
             }
-            let Some(value) = row.number("measurement")? else { continue };
+            let Some(value) = row.number("measurement")? else {
+                empty.push(row.number_of_line());
+                continue;
+            };
             let new = || Experiment {
                 condition: condition.to_owned(),
                 rest: rest.map(str::to_owned),
@@ -105,7 +111,7 @@ impl Reader<'_> {
             own.points.iter_mut().for_each(|point| point.time = point.time.min(rest));
         }
         let experiments = experiments.into_values().flat_map(|own| own.split(&outputs));
-        Ok(Measured { experiments: experiments.collect(), outputs })
+        Ok(Measured { experiments: experiments.collect(), outputs, empty })
     }
 
     fn condition<'r>(&self, row: &'r Row, name: &'r str) -> Result<&'r str, Refusal> {
@@ -121,8 +127,15 @@ impl Reader<'_> {
         let place = self.observables.iter().position(|own| own.id == id);
         let place = place.ok_or_else(|| row.wrong(format!("no observable `{id}` is defined")))?;
         let observable = &self.observables[place];
-        let mut values = placeholders(row, ("observableParameter", "observableParameters"), id)?;
-        values.extend(placeholders(row, ("noiseParameter", "noiseParameters"), id)?);
+        let mut values =
+            placeholders(row, ("observableParameter", "observableParameters"), observable)?;
+        values.extend(placeholders(row, ("noiseParameter", "noiseParameters"), observable)?);
+        let mut known = observable.formula.names();
+        known.extend(observable.noise.names());
+        if let Some(surplus) = values.keys().find(|name| !known.contains(*name)) {
+            let message = format!("the row gives a value for `{surplus}`, which no formula has");
+            return Err(row.wrong(message));
+        }
         let formula = observable.formula.substituted(&values);
         // Noise may be relative to the observable.
         let mut of_noise = values.clone();
@@ -131,8 +144,7 @@ impl Reader<'_> {
         for expression in [&formula, &noise] {
             let names = expression.names();
             let is_open = |name: &&String| {
-                (name.starts_with("observableParameter") || name.starts_with("noiseParameter"))
-                    && !self.parameters.contains_key(*name)
+                observable.is_placeholder(name) && !self.parameters.contains_key(*name)
             };
             if let Some(name) = names.iter().find(is_open) {
                 return Err(row.wrong(format!("the row gives no value for `{name}`")));

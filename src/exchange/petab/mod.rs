@@ -1,5 +1,5 @@
-//! Parameter estimation problems in PEtab (version 1) as a Modelica model, a problem file and tables
-//! of data.
+//! Parameter estimation problems in PEtab (versions 1 and 2) as a Modelica model, a problem file and
+//! tables of data.
 //!
 //! Observables become variables of the model, the parameters of their formulas its parameters. Every
 //! condition is an experiment. Noise is a number for each measurement, a standard deviation that is
@@ -9,17 +9,18 @@ mod experiments;
 mod problem;
 mod rows;
 mod table;
+mod version2;
 
 pub use problem::ReadFile;
 
 use crate::Refusal;
 use crate::expression::{Context, Expression, number, printed};
 use crate::names::{Names, identifier};
-use crate::sbml::{self, Additions, Extended};
+use crate::sbml::{self, Additions, Extended, Model};
 use experiments::{Experiment, Measured, Noise, Output, Reader, Sigma};
 use indexmap::IndexMap;
-use problem::Tables;
-use rows::{Observable, Parameter, Prior};
+use problem::{File, Language, Tables};
+use rows::{Observable, Parameter};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -30,6 +31,8 @@ pub struct Imported {
     pub problem: String,
     /// Names and contents of all files.
     pub files: Vec<(String, String)>,
+    /// What should be known of them.
+    pub notes: Vec<String>,
 }
 
 /// What the tables of a problem say.
@@ -39,6 +42,10 @@ struct Problem {
     observables: Vec<Observable>,
     measured: Measured,
     conditions: IndexMap<String, table::Row>,
+    /// Names in the model of those that tables use.
+    mapping: BTreeMap<String, String>,
+    /// The words of a model in Modelica, to which nothing is added.
+    in_modelica: Option<BTreeSet<String>>,
 }
 
 /// The files of the problem `name` that a YAML file describes; `read` gives the files beside it.
@@ -47,13 +54,34 @@ struct Problem {
 ///
 /// What is wrong in a file, or not supported, at its place.
 pub fn import(name: &str, yaml: &str, read: ReadFile<'_>) -> Result<Imported, Refusal> {
-    let tables = problem::read(yaml, read)?;
+    let tables = tables(yaml, read)?;
     let (model, text) = tables.model.clone();
+    let language = tables.language.clone();
     let mut problem = Problem::of(name, tables)?;
-    let mentioned = sbml::mentioned(&text).map_err(|refusal| refusal.in_file(&model))?;
-    problem.decide_noise(&mentioned)?;
-    let extended = problem.model(&text).map_err(|refusal| refusal.in_file(&model))?;
-    problem.files(&extended)
+    let Language::Modelica(class) = language else {
+        let mentioned = sbml::mentioned(&text).map_err(|refusal| refusal.in_file(&model))?;
+        problem.decide_noise(&mentioned)?;
+        let extended = problem.model(&text).map_err(|refusal| refusal.in_file(&model))?;
+        return problem.files(&extended, &format!("{}.mo", file_name(&extended.model.name)));
+    };
+    problem.in_modelica = Some(words(&text));
+    problem.decide_noise(&words(&text))?;
+    problem.check_modelica()?;
+    let set = problem.conditions.values().flat_map(targets);
+    let set = set.map(|(name, _)| (name.to_owned(), name.to_owned())).collect();
+    let extended = Extended { model: Model { name: class, text }, set, at_rest: BTreeMap::new() };
+    problem.files(&extended, &model)
+}
+
+/// The tables of a problem in either version.
+fn tables(yaml: &str, read: ReadFile<'_>) -> Result<Tables, Refusal> {
+    let file = File { text: yaml };
+    let documents = problem::documents(&file)?;
+    let document = documents.first().ok_or_else(|| file.wrong(None, "the file is empty"))?;
+    match problem::version(&file, document)? {
+        2 => version2::read(&file, document, read),
+        _ => problem::read(&file, document, read),
+    }
 }
 
 impl Problem {
@@ -76,7 +104,15 @@ impl Problem {
         let reader =
             Reader { observables: &observables, parameters: &parameters, conditions: &conditions };
         let measured = reader.read(&tables.measurements)?;
-        Ok(Problem { name: name.to_owned(), parameters, observables, measured, conditions })
+        Ok(Problem {
+            name: name.to_owned(),
+            parameters,
+            observables,
+            measured,
+            conditions,
+            mapping: tables.mapping,
+            in_modelica: None,
+        })
     }
 
     /// Names of parameters that formulas and conditions use.
@@ -181,6 +217,40 @@ impl Problem {
         Ok(())
     }
 
+    /// Refuses what a model in Modelica would have to be extended by.
+    fn check_modelica(&self) -> Result<(), Refusal> {
+        for output in &self.measured.outputs {
+            if !matches!(output.formula, Expression::Name(_)) {
+                let row = &self.observables[output.observable].row;
+                let message = "the observable of a model in Modelica is a formula, not a variable, \
+                               which is not supported";
+                return Err(row.wrong(message));
+            }
+        }
+        let before = self.measured.experiments.iter().find_map(|own| own.rest.as_ref());
+        match before {
+            Some(rest) => Err(self.conditions[rest.as_str()]
+                .wrong("a steady state before, with a model in Modelica, is not supported")),
+            None => Ok(()),
+        }
+    }
+
+    /// A name in the model, as a key of the problem file.
+    fn in_model(&self, name: &str) -> String {
+        match self.mapping.get(name) {
+            Some(own) => key(own),
+            None => key(&identifier(name)),
+        }
+    }
+
+    /// What an output is in the model.
+    fn variable(&self, output: &Output) -> String {
+        match &output.formula {
+            Expression::Name(name) if self.in_modelica.is_some() => self.in_model(name),
+            _ => key(&identifier(&output.name)),
+        }
+    }
+
     /// What has another value in a steady state than in the simulation that follows.
     ///
     /// # Errors
@@ -247,9 +317,9 @@ impl Problem {
         )
     }
 
-    fn files(&self, extended: &Extended) -> Result<Imported, Refusal> {
+    fn files(&self, extended: &Extended, model_file: &str) -> Result<Imported, Refusal> {
         let class = &extended.model.name;
-        let model_file = format!("{}.mo", file_name(class));
+        let model_file = file_name(model_file);
         let mut text = String::new();
         _ = writeln!(
             text,
@@ -274,36 +344,44 @@ impl Problem {
         }
         let problem = format!("{}.toml", file_name(&self.name));
         files.insert(0, (problem.clone(), text));
-        Ok(Imported { problem, files })
+        Ok(Imported { problem, files, notes: self.notes() })
+    }
+
+    /// Measurements without a value, which are left out.
+    fn notes(&self) -> Vec<String> {
+        let empty = &self.measured.empty;
+        let Some(first) = empty.first() else { return Vec::new() };
+        let what = match empty.len() {
+            1 => format!("the measurement at {first} has no value and is left out"),
+            n => format!("{n} measurements have no value and are left out (first at {first})"),
+        };
+        vec![what]
     }
 
     fn write_parameters(&self, text: &mut String) {
         let deviations = self.deviations();
-        for own in self.parameters.values().filter(|own| own.estimated) {
+        for own in self.parameters.values() {
+            let name = self.in_model(&own.id);
+            if !own.estimated {
+                let is_of_model =
+                    self.in_modelica.as_ref().is_some_and(|words| words.contains(&own.id));
+                if let Some(value) = own.nominal.filter(|_| is_of_model) {
+                    _ = writeln!(text, "{name} = {{ fixed = {} }}", number(value));
+                }
+                continue;
+            }
             if deviations.contains(own.id.as_str()) {
                 _ = writeln!(text, "# {} is the sigma of an output, and estimated as such", own.id);
                 continue;
             }
             let [min, max] = own.range.map(number);
-            let scale = if own.logarithmic { "log" } else { "linear" };
-            let prior = match &own.prior {
-                None => String::new(),
-                Some(Prior::Normal { mean, sd }) => {
-                    format!(", prior = {{ mean = {}, sd = {} }}", number(*mean), number(*sd))
-                }
-                Some(Prior::LogNormal { median, factor }) => {
-                    format!(
-                        ", prior = {{ median = {}, factor = {} }}",
-                        number(*median),
-                        number(*factor)
-                    )
-                }
+            let scale = match own.logarithmic {
+                Some(true) => ", scale = \"log\"",
+                Some(false) => ", scale = \"linear\"",
+                None => "",
             };
-            let name = key(&identifier(&own.id));
-            _ = writeln!(
-                text,
-                "{name} = {{ min = {min}, max = {max}, scale = \"{scale}\"{prior} }}"
-            );
+            let prior = own.prior.as_ref().map_or(String::new(), |own| format!(", prior = {own}"));
+            _ = writeln!(text, "{name} = {{ min = {min}, max = {max}{scale}{prior} }}");
         }
     }
 
@@ -328,6 +406,9 @@ impl Problem {
                 number(-experiment.until_rest())
             );
         }
+        if let Some(start) = row.get("startTime") {
+            _ = writeln!(text, "start_time = {start}");
+        }
         let set = self.set(row, rest.unwrap_or(row), extended)?;
         if !set.is_empty() {
             _ = writeln!(text, "set = {{ {} }}", set.join(", "));
@@ -343,18 +424,31 @@ impl Problem {
                     format!("columns = [{}]", all.join(", "))
                 }
             };
-            let sigma = match sigma {
-                Sigma::Number(value) => number(value),
-                Sigma::Column => quoted(&format!("{}_sigma", output.name)),
-                Sigma::Estimated => quoted(&self.estimated(output)),
-                Sigma::Variable => quoted(&identifier(&deviation(&output.name))),
+            let sigma = self.sigma(output, sigma);
+            let observable = &self.observables[output.observable];
+            let error = match (observable.of_logarithm.is_some(), observable.is_laplace) {
+                (false, false) => "",
+                (true, false) => ", error = \"lognormal\"",
+                (false, true) => ", error = \"laplace\"",
+                (true, true) => ", error = \"loglaplace\"",
             };
-            let logarithm = self.observables[output.observable].of_logarithm;
-            let error = if logarithm.is_some() { ", error = \"lognormal\"" } else { "" };
-            let name = key(&identifier(&output.name));
+            let name = self.variable(output);
             _ = writeln!(text, "{name} = {{ {columns}, sigma = {sigma}{error} }}");
         }
         Ok(table)
+    }
+
+    /// The sigma of an output as the problem file has it.
+    fn sigma(&self, output: &Output, sigma: Sigma) -> String {
+        match (sigma, &output.noise, &self.in_modelica) {
+            (Sigma::Number(value), ..) => number(value),
+            (Sigma::Column, ..) => quoted(&format!("{}_sigma", output.name)),
+            (Sigma::Estimated, ..) => quoted(&self.estimated(output)),
+            (Sigma::Variable, Noise::Formula(formula), Some(_)) => {
+                quoted(&printed(formula, Context::Real))
+            }
+            (Sigma::Variable, ..) => quoted(&identifier(&deviation(&output.name))),
+        }
     }
 
     /// What an experiment sets, after it was at rest in another condition.
@@ -373,8 +467,7 @@ impl Problem {
             let of_rest = extended.at_rest.get(column).map(|name| (rest, name.as_str()));
             for (row, parameter) in [Some((own, parameter)), of_rest].into_iter().flatten() {
                 let Some(value) = row.get(column) else { continue };
-                let entry =
-                    format!("{} = {}", key(&identifier(parameter)), self.value(row, value)?);
+                let entry = format!("{} = {}", self.in_model(parameter), self.value(row, value)?);
                 if !set.contains(&entry) {
                     set.push(entry);
                 }
@@ -414,14 +507,23 @@ impl Problem {
     }
 }
 
+/// The identifiers in a text, and what else looks like one.
+fn words(text: &str) -> BTreeSet<String> {
+    let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+    words.filter(|word| !word.is_empty()).map(str::to_owned).collect()
+}
+
 /// The name of the variable that has the standard deviation of an output.
 fn deviation(output: &str) -> String {
     format!("sigma_of_{output}")
 }
 
+/// Columns of conditions that set nothing.
+const ABOUT: [&str; 3] = ["conditionId", "conditionName", "startTime"];
+
 /// What a condition sets.
 fn targets(row: &table::Row) -> impl Iterator<Item = (&str, &str)> {
-    let is_target = |(column, _): &(&str, &str)| !["conditionId", "conditionName"].contains(column);
+    let is_target = |(column, _): &(&str, &str)| !ABOUT.contains(column);
     row.filled().into_iter().filter(is_target)
 }
 

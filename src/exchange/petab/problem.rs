@@ -1,4 +1,4 @@
-//! What a PEtab problem (version 1) consists of: the files that its YAML file names, and their rows.
+//! What a PEtab problem consists of: the files that its YAML file names, and their rows.
 
 use super::table::{Row, rows};
 use crate::Refusal;
@@ -6,28 +6,44 @@ use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
 use indexmap::IndexMap;
 use saphyr::{LoadableYamlNode as _, MarkedYaml};
+use std::collections::BTreeMap;
 
 /// The tables of a problem.
 pub(super) struct Tables {
     /// The name and the text of the file of the model.
     pub(super) model: (String, String),
+    pub(super) language: Language,
+    /// Names in the model of those that tables use.
+    pub(super) mapping: BTreeMap<String, String>,
     pub(super) parameters: Vec<Row>,
     pub(super) conditions: IndexMap<String, Row>,
     pub(super) observables: Vec<Row>,
     pub(super) measurements: Vec<Row>,
 }
 
+/// What the model is written in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Language {
+    Sbml,
+    /// Modelica, with the name of the class.
+    Modelica(String),
+}
+
 /// Gives the text of a file beside the YAML file.
 pub type ReadFile<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
 
 /// The YAML file, for faults at the places of its entries.
-struct File<'a> {
-    text: &'a str,
+pub(super) struct File<'a> {
+    pub(super) text: &'a str,
 }
 
 impl File<'_> {
     /// A fault at an entry, or in the file where there is none.
-    fn wrong(&self, entry: Option<&MarkedYaml<'_>>, message: impl Into<String>) -> Refusal {
+    pub(super) fn wrong(
+        &self,
+        entry: Option<&MarkedYaml<'_>>,
+        message: impl Into<String>,
+    ) -> Refusal {
         let place = entry.map_or(0..0, |own| {
             let start = self.offset(own.span.start.index());
             let end = self.offset(own.span.end.index()).max(start);
@@ -45,7 +61,7 @@ impl File<'_> {
 }
 
 /// An entry of a mapping.
-fn entry<'a, 'i>(own: &'a MarkedYaml<'i>, key: &str) -> Option<&'a MarkedYaml<'i>> {
+pub(super) fn entry<'a, 'i>(own: &'a MarkedYaml<'i>, key: &str) -> Option<&'a MarkedYaml<'i>> {
     own.data.as_mapping_get(key)
 }
 
@@ -56,44 +72,36 @@ fn names<'a, 'i>(own: &'a MarkedYaml<'i>, key: &str) -> Vec<(&'a str, &'a Marked
     list.iter().filter_map(|one| Some((one.data.as_str()?, one))).collect()
 }
 
-/// The tables that the YAML file names.
-///
-/// # Errors
-///
-/// What is wrong with it or with a table; other versions, several models.
-pub(super) fn read(yaml: &str, read: ReadFile<'_>) -> Result<Tables, Refusal> {
-    let file = File { text: yaml };
-    let documents = MarkedYaml::load_from_str(yaml).map_err(|error| {
+/// The documents in a YAML file.
+pub(super) fn documents<'i>(file: &File<'i>) -> Result<Vec<MarkedYaml<'i>>, Refusal> {
+    MarkedYaml::load_from_str(file.text).map_err(|error| {
         let start = file.offset(error.marker().index());
         let fault = Fault::new(BAD_OPTION, format!("the file is not YAML: {}", error.info()));
         Refusal::new(start..start, fault)
-    })?;
-    let document = documents.first().ok_or_else(|| file.wrong(None, "the file is empty"))?;
-    version(&file, document)?;
-    let problem = problem(&file, document)?;
+    })
+}
+
+/// The tables that the YAML file of a problem in version 1 names.
+///
+/// # Errors
+///
+/// What is wrong with it or with a table; several models.
+pub(super) fn read(
+    file: &File<'_>,
+    document: &MarkedYaml<'_>,
+    read: ReadFile<'_>,
+) -> Result<Tables, Refusal> {
+    let problem = problem(file, document)?;
     let models = names(problem, "sbml_files");
     let [(model, place)] = models[..] else {
         let entry = entry(problem, "sbml_files").or(Some(problem));
         let message = format!("the problem has {} models; one is supported", models.len());
         return Err(file.wrong(entry, message));
     };
-    let cannot = |name: &str, place: &MarkedYaml<'_>, error: String| {
-        file.wrong(Some(place), format!("cannot read `{name}`: {error}"))
-    };
-    let text = read(model).map_err(|error| cannot(model, place, error))?;
+    let text = read(model)
+        .map_err(|error| file.wrong(Some(place), format!("cannot read `{model}`: {error}")))?;
     let mut all = |own: &MarkedYaml<'_>, key: &str, required: &[&str]| {
-        let mut all = Vec::new();
-        for (name, place) in names(own, key) {
-            let text = read(name).map_err(|error| cannot(name, place, error))?;
-            all.extend(rows(name, &text, required)?);
-        }
-        match all.is_empty() {
-            true => {
-                let entry = entry(own, key).or(Some(own));
-                Err(file.wrong(entry, format!("`{key}` names no table with rows")))
-            }
-            false => Ok(all),
-        }
+        all_rows((file, own), key, required, read)
     };
     let parameters =
         all(document, "parameter_file", &["parameterId", "parameterScale", "estimate"])?;
@@ -109,8 +117,37 @@ pub(super) fn read(yaml: &str, read: ReadFile<'_>) -> Result<Tables, Refusal> {
         }
         conditions.insert(name, row);
     }
-    let model = (model.to_owned(), text);
-    Ok(Tables { model, parameters, conditions, observables, measurements })
+    Ok(Tables {
+        model: (model.to_owned(), text),
+        language: Language::Sbml,
+        mapping: BTreeMap::new(),
+        parameters,
+        conditions,
+        observables,
+        measurements,
+    })
+}
+
+/// The rows of all tables that an entry names.
+pub(super) fn all_rows(
+    (file, own): (&File<'_>, &MarkedYaml<'_>),
+    key: &str,
+    required: &[&str],
+    read: ReadFile<'_>,
+) -> Result<Vec<Row>, Refusal> {
+    let mut all = Vec::new();
+    for (name, place) in names(own, key) {
+        let text = read(name)
+            .map_err(|error| file.wrong(Some(place), format!("cannot read `{name}`: {error}")))?;
+        all.extend(rows(name, &text, required)?);
+    }
+    match all.is_empty() {
+        true => {
+            let entry = entry(own, key).or(Some(own));
+            Err(file.wrong(entry, format!("`{key}` names no table with rows")))
+        }
+        false => Ok(all),
+    }
 }
 
 /// The problem of the file.
@@ -132,8 +169,8 @@ fn problem<'a, 'i>(
     }
 }
 
-/// Refuses other versions than 1.
-fn version(file: &File<'_>, document: &MarkedYaml<'_>) -> Result<(), Refusal> {
+/// The version, 1 or 2.
+pub(super) fn version(file: &File<'_>, document: &MarkedYaml<'_>) -> Result<u8, Refusal> {
     let version = entry(document, "format_version");
     let text = version.and_then(|own| {
         let integer = own.data.as_integer().map(|number| number.to_string());
@@ -141,7 +178,8 @@ fn version(file: &File<'_>, document: &MarkedYaml<'_>) -> Result<(), Refusal> {
         integer.or_else(number).or_else(|| own.data.as_str().map(str::to_owned))
     });
     match text.as_deref().map(|text| text.split('.').next().unwrap_or_default()) {
-        Some("1") => Ok(()),
+        Some("1") => Ok(1),
+        Some("2") => Ok(2),
         Some(other) => {
             Err(file.wrong(version, format!("version {other} of PEtab is not supported")))
         }

@@ -3,7 +3,7 @@
 use super::table::Row;
 use crate::Refusal;
 use crate::diag::Fault;
-use crate::expression::{Expression, formula};
+use crate::expression::{Expression, formula, number};
 use crate::registry::BAD_OPTION;
 use std::collections::BTreeMap;
 
@@ -15,18 +15,13 @@ const LN_10: f64 = std::f64::consts::LN_10;
 pub(super) struct Parameter {
     pub(super) id: String,
     pub(super) title: String,
-    pub(super) logarithmic: bool,
+    /// Whether the scale of the search is one of logarithms, where that is said.
+    pub(super) logarithmic: Option<bool>,
     pub(super) range: [f64; 2],
     pub(super) nominal: Option<f64>,
     pub(super) estimated: bool,
-    pub(super) prior: Option<Prior>,
-}
-
-/// What is known of a parameter, as a problem file says it.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Prior {
-    Normal { mean: f64, sd: f64 },
-    LogNormal { median: f64, factor: f64 },
+    /// What is known of it, as a problem file has it.
+    pub(super) prior: Option<String>,
 }
 
 /// How an observable is compared with its measurements.
@@ -39,7 +34,21 @@ pub(super) struct Observable {
     /// What the noise is multiplied with to be that of the natural logarithm; `None` where values are
     /// compared as they are.
     pub(super) of_logarithm: Option<f64>,
+    /// Whether the errors are distributed as Laplace has it, else normally.
+    pub(super) is_laplace: bool,
     pub(super) row: Row,
+}
+
+impl Observable {
+    /// Whether measurements give a value for the name.
+    pub(super) fn is_placeholder(&self, name: &str) -> bool {
+        let declared = |column: &str| {
+            self.row.get(column).is_some_and(|names| names.split(';').any(|own| own.trim() == name))
+        };
+        ["observableParameter", "noiseParameter"].iter().any(|usual| name.starts_with(usual))
+            || declared("observablePlaceholders")
+            || declared("noisePlaceholders")
+    }
 }
 
 pub(super) fn parsed(row: &Row, text: &str) -> Result<Expression, Refusal> {
@@ -48,11 +57,19 @@ pub(super) fn parsed(row: &Row, text: &str) -> Result<Expression, Refusal> {
 
 pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
     let id = row.required("parameterId")?.to_owned();
-    let scale = row.required("parameterScale")?;
+    // Version 2 has none.
+    let scale = row.get("parameterScale").unwrap_or("lin");
     if !["lin", "log", "log10"].contains(&scale) {
         return Err(row.wrong(format!("the scale `{scale}` is not `lin`, `log` or `log10`")));
     }
-    let estimated = row.number("estimate")? == Some(1.0);
+    let estimated = match row.get("estimate") {
+        Some("1" | "1.0" | "true") => true,
+        Some("0" | "0.0" | "false") => false,
+        other => {
+            let other = other.unwrap_or_default();
+            return Err(row.wrong(format!("`estimate` is `{other}`, neither 0 nor 1")));
+        }
+    };
     let limit = |column: &str| -> Result<f64, Refusal> {
         let value = row.number(column)?.filter(|value| value.is_finite());
         match value {
@@ -64,7 +81,12 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         }
     };
     let mut range = [limit("lowerBound")?, limit("upperBound")?];
-    if let Some([lower, upper]) = uniform(row, scale)?.filter(|_| estimated) {
+    let (prior, within) = if estimated { prior(row, scale)? } else { (None, None) };
+    if estimated && range[0] >= range[1] {
+        let [low, high] = range;
+        return Err(row.wrong(format!("the bounds of `{id}` are {low} and {high}")));
+    }
+    if let Some([lower, upper]) = within {
         range = [range[0].max(lower), range[1].min(upper)];
         if range[0] >= range[1] {
             return Err(row.wrong(format!("the prior of `{id}` lies outside its bounds")));
@@ -72,68 +94,83 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
     }
     Ok(Parameter {
         title: row.get("parameterName").unwrap_or_default().to_owned(),
-        logarithmic: scale != "lin",
+        logarithmic: row.get("parameterScale").map(|scale| scale != "lin"),
         range,
         nominal: row.number("nominalValue")?,
         estimated,
-        prior: if estimated { prior(row, scale)? } else { None },
+        prior,
         id,
     })
 }
 
-/// The range of a uniform prior, which is constant within it.
-fn uniform(row: &Row, scale: &str) -> Result<Option<[f64; 2]>, Refusal> {
-    let kind = row.get("objectivePriorType").unwrap_or_default();
-    let on_scale = kind == "parameterScaleUniform";
-    let text = row.get("objectivePriorParameters").unwrap_or_default();
-    if !(on_scale || kind == "uniform" && scale == "lin") || text.is_empty() {
-        return Ok(None);
+/// The numbers of a column, separated by semicolons.
+fn two_numbers(row: &Row, column: &str, kind: &str) -> Result<[f64; 2], Refusal> {
+    let text = row.get(column).unwrap_or_default();
+    let parts: Vec<Option<f64>> = text.split(';').map(|part| part.trim().parse().ok()).collect();
+    match parts[..] {
+        [Some(first), Some(second)] => Ok([first, second]),
+        _ => Err(row.wrong(format!("the prior `{kind}` needs two numbers, not `{text}`"))),
     }
-    let numbers: Vec<f64> = text.split(';').filter_map(|part| part.trim().parse().ok()).collect();
-    let [lower, upper] = numbers[..] else {
-        return Err(row.wrong(format!("the prior `{kind}` needs two numbers, not `{text}`")));
-    };
-    let unit = match scale {
-        "log10" => LN_10,
-        "log" => 1.0,
-        _ => return Ok(Some([lower, upper])),
-    };
-    Ok(Some([lower, upper].map(|value| crate::elementary::exp(value * unit))))
 }
 
-fn prior(row: &Row, scale: &str) -> Result<Option<Prior>, Refusal> {
-    let Some(kind) = row.get("objectivePriorType") else { return Ok(None) };
-    let text = row.get("objectivePriorParameters").unwrap_or_default();
-    let numbers: Vec<f64> = text.split(';').filter_map(|part| part.trim().parse().ok()).collect();
-    // Within the range, uniform priors are constant.
-    if kind == "parameterScaleUniform" || kind == "uniform" && scale == "lin" {
-        return Ok(None);
+/// The prior of a parameter, and the range outside of which it is 0.
+fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), Refusal> {
+    let Some(kind) = row.get("objectivePriorType") else { return Ok((None, None)) };
+    let is_uniform = kind == "uniform" || kind == "parameterScaleUniform";
+    if is_uniform && row.get("objectivePriorParameters").is_none() {
+        return Ok((None, None));
     }
-    let [mean, sd] = numbers[..] else {
-        return Err(row.wrong(format!("the prior `{kind}` needs two numbers, not `{text}`")));
+    let [first, second] = two_numbers(row, "objectivePriorParameters", kind)?;
+    if is_uniform && first >= second {
+        return Err(row.wrong(format!("the uniform prior reaches from {first} to {second}")));
+    }
+    if !is_uniform && (second.is_nan() || second <= 0.0) {
+        return Err(row.wrong(format!("the width of the prior is {second}, not positive")));
+    }
+    let (unit, base) = match scale {
+        "log10" => (10.0, ", base = 10"),
+        _ => (std::f64::consts::E, ""),
     };
-    let log_normal = |unit: f64| {
-        let [median, factor] = [mean, sd].map(|value| crate::elementary::exp(value * unit));
-        Prior::LogNormal { median, factor }
+    let is_on_scale = kind.starts_with("parameterScale") && scale != "lin";
+    let [a, b] = match is_on_scale {
+        true => [first, second].map(|value| crate::elementary::powf(unit, value)),
+        false => [first, second],
     };
-    match (kind, scale) {
-        ("parameterScaleNormal" | "normal", "lin") => Ok(Some(Prior::Normal { mean, sd })),
-        ("parameterScaleNormal", "log10") => Ok(Some(log_normal(LN_10))),
-        ("parameterScaleNormal", _) => Ok(Some(log_normal(1.0))),
-        ("normal", _) => Ok(Some(Prior::Normal { mean, sd })),
+    let [low, high] = [a, b].map(number);
+    let text = match (kind, is_on_scale) {
+        ("uniform" | "parameterScaleUniform", false) => {
+            format!("{{ distribution = \"uniform\", min = {low}, max = {high} }}")
+        }
+        ("parameterScaleUniform", true) => {
+            format!("{{ distribution = \"loguniform\", min = {low}, max = {high}{base} }}")
+        }
+        ("normal" | "parameterScaleNormal", false) => format!("{{ mean = {low}, sd = {high} }}"),
+        ("parameterScaleNormal", true) => {
+            format!("{{ median = {low}, factor = {high}{base} }}")
+        }
+        ("laplace" | "parameterScaleLaplace", false) => {
+            format!("{{ distribution = \"laplace\", median = {low}, scale = {high} }}")
+        }
+        ("parameterScaleLaplace", true) => {
+            format!("{{ distribution = \"laplace\", median = {low}, factor = {high}{base} }}")
+        }
         _ => {
             let fault = Fault::new(BAD_OPTION, format!("the prior `{kind}` is not supported"))
-                .help("supported are uniform and normal ones on the scale of the parameter");
-            Err(row.refusal(fault))
+                .help("supported are uniform, normal and Laplace ones, also parameterScale…");
+            return Err(row.refusal(fault));
         }
-    }
+    };
+    Ok((Some(text), is_uniform.then_some([a, b])))
 }
 
 pub(super) fn observable(row: &Row) -> Result<Observable, Refusal> {
-    let distribution = row.get("noiseDistribution").unwrap_or("normal");
-    if distribution != "normal" {
-        return Err(row.wrong(format!("the noise distribution `{distribution}` is not supported")));
-    }
+    let is_laplace = match row.get("noiseDistribution").unwrap_or("normal") {
+        "normal" => false,
+        "laplace" => true,
+        other => {
+            return Err(row.wrong(format!("the noise distribution `{other}` is not supported")));
+        }
+    };
     let of_logarithm = match row.get("observableTransformation").unwrap_or("lin") {
         "lin" => None,
         "log" => Some(1.0),
@@ -146,20 +183,30 @@ pub(super) fn observable(row: &Row) -> Result<Observable, Refusal> {
         formula: parsed(row, row.required("observableFormula")?)?,
         noise: parsed(row, row.required("noiseFormula")?)?,
         of_logarithm,
+        is_laplace,
         row: row.clone(),
     })
 }
 
-/// The values of placeholders in a row of measurements: `observableParameter1_ID` and so on.
+/// The values of placeholders in a row of measurements: `observableParameter1_ID` and so on, in version 2
+/// with the names that the observable declares.
 pub(super) fn placeholders(
     row: &Row,
     (kind, column): (&str, &str),
-    observable: &str,
+    observable: &Observable,
 ) -> Result<BTreeMap<String, Expression>, Refusal> {
     let text = row.get(column).unwrap_or_default();
     let parts = text.split(';').map(str::trim).filter(|part| !part.is_empty());
     parts
         .enumerate()
-        .map(|(k, part)| Ok((format!("{kind}{}_{observable}", k + 1), parsed(row, part)?)))
+        .map(|(k, part)| {
+            let usual = || format!("{kind}{}_{}", k + 1, observable.id);
+            let declared = observable.row.get(&kind.replace("Parameter", "Placeholders"));
+            let name = match declared {
+                Some(names) => names.split(';').nth(k).map_or_else(usual, |own| own.trim().into()),
+                None => usual(),
+            };
+            Ok((name, parsed(row, part)?))
+        })
         .collect()
 }

@@ -12,6 +12,7 @@ use std::rc::Rc;
 pub(super) struct Row {
     file: Rc<str>,
     place: Range<usize>,
+    line: usize,
     columns: Rc<BTreeMap<String, usize>>,
     cells: Vec<String>,
 }
@@ -25,7 +26,7 @@ pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>
     let name: Rc<str> = file.into();
     let mut heading: Option<(Rc<BTreeMap<String, usize>>, usize)> = None;
     let (mut rows, mut start) = (Vec::new(), 0);
-    for line in text.split_inclusive('\n') {
+    for (number, line) in text.split_inclusive('\n').enumerate() {
         let place = start..start + line.trim_end().len();
         start += line.len();
         let line = line.trim_end_matches(['\n', '\r']);
@@ -50,7 +51,8 @@ pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>
             heading = Some((Rc::new(columns.collect()), width));
             continue;
         };
-        let row = Row { file: name.clone(), place, columns: columns.clone(), cells };
+        let row =
+            Row { file: name.clone(), place, line: number + 1, columns: columns.clone(), cells };
         if let Some(extra) = row.cells.iter().skip(*width).find(|cell| !cell.is_empty()) {
             return Err(row.wrong(format!(
                 "the cell `{extra}` has no column: the heading has {width} of them"
@@ -92,12 +94,30 @@ impl Row {
             .map_err(|_| self.wrong(format!("`{column}` is `{text}`, which is not a number")))
     }
 
+    /// The columns with content and their cells.
+    pub(super) fn pairs(row: &Row) -> Vec<(String, String)> {
+        let own = |(name, cell): (&str, &str)| (name.to_owned(), cell.to_owned());
+        row.filled().into_iter().map(own).collect()
+    }
+
+    /// A row with these columns in the place of this one.
+    pub(super) fn made(&self, pairs: Vec<(String, String)>) -> Row {
+        let (names, cells): (Vec<String>, Vec<String>) = pairs.into_iter().unzip();
+        let columns = names.into_iter().enumerate().map(|(k, name)| (name, k)).collect();
+        Row { columns: Rc::new(columns), cells, ..self.clone() }
+    }
+
     /// The columns with content, in the order of the file.
     pub(super) fn filled(&self) -> Vec<(&str, &str)> {
         let mut all: Vec<(&str, usize)> =
             self.columns.iter().map(|(name, place)| (name.as_str(), *place)).collect();
         all.sort_by_key(|(_, place)| *place);
         all.into_iter().filter_map(|(name, _)| Some((name, self.get(name)?))).collect()
+    }
+
+    /// Its line, as `file:line`.
+    pub(super) fn number_of_line(&self) -> String {
+        format!("{}:{}", self.file, self.line)
     }
 
     /// A fault in this row.

@@ -251,10 +251,17 @@ fn packages(root: &Element<'_, '_>) -> Result<(), Refusal> {
             && attribute.namespace().is_some()
             && attribute.value() == "true"
     });
-    let Some(attribute) = required else { return Ok(()) };
-    let words: Vec<&str> = attribute.namespace().unwrap_or_default().split('/').collect();
+    let Some(space) = required.and_then(|attribute| attribute.namespace()) else { return Ok(()) };
+    let is_used = |node: &roxmltree::Node<'_, '_>| {
+        let mut attributes = node.attributes();
+        let is_of_it = node.tag_name().namespace() == Some(space);
+        is_of_it || *node != root.0 && attributes.any(|own| own.namespace() == Some(space))
+    };
+    // Programs declare packages that the model does not use.
+    let Some(used) = root.0.descendants().find(is_used) else { return Ok(()) };
+    let words: Vec<&str> = space.split('/').collect();
     let name = words.iter().rev().nth(1).copied().unwrap_or_default();
-    Err(root.unsupported(&format!("the package `{name}` of SBML")))
+    Err(Element(used).unsupported(&format!("the package `{name}` of SBML")))
 }
 
 impl Reader {

@@ -20,9 +20,8 @@
 //!
 //! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 2.2 and chapter 11.
 
-use super::{Fitness, checked};
+use super::{Fitness, Law, checked};
 use crate::elementary;
-use std::f64::consts::SQRT_2;
 
 /// The standard deviation of a point, or what else the point is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,23 +38,33 @@ pub(crate) enum Deviation {
 
 /// The concentrated likelihood of some groups of points.
 pub(crate) struct Concentrated {
-    /// The deviation of each point.
-    deviations: Vec<Deviation>,
-    /// Points of each group.
-    count: Vec<f64>,
-    /// The smallest deviation of each group: that of the simulation's own errors.
-    floor: Vec<f64>,
+    /// The density and the deviation of each point.
+    points: Vec<(Law, Deviation)>,
+    /// The groups.
+    groups: Vec<Group>,
     /// Points that are measured.
     n_measured: f64,
 }
 
+/// Points with one deviation, which is estimated.
+struct Group {
+    /// Points.
+    count: f64,
+    /// The smallest deviation: that of the simulation's own errors.
+    floor: f64,
+    /// The points of it where some are not normal, so that the deviation has to be searched.
+    searched: Vec<usize>,
+}
+
 /// What one simulation has.
 struct Scales {
-    /// Σ u² of the given.
+    /// Σ 2ρ of the given, and of those of searched groups.
     given: f64,
+    /// Σ of the squares of the residuals of those, by G κ².
+    given_squares: f64,
     /// s_g² of the groups.
     variance: Vec<f64>,
-    /// Σ (u² + 2 ln σ) of those computed by the model.
+    /// Σ (2ρ + 2 ln σ) of those computed by the model.
     computed: f64,
     /// Σ of the squares of the residuals of those, by G κ².
     computed_squares: f64,
@@ -63,64 +72,132 @@ struct Scales {
 
 impl Concentrated {
     /// `floor`: the smallest standard deviation of each group, in units of the weighted points.
-    pub fn new(deviations: Vec<Deviation>, floor: Vec<f64>) -> Concentrated {
-        let (mut count, mut n_measured) = (vec![0.0; floor.len()], 0.0);
-        for own in &deviations {
+    pub fn new(points: Vec<(Law, Deviation)>, floor: Vec<f64>) -> Concentrated {
+        let group = |floor| Group { count: 0.0, floor, searched: Vec::new() };
+        let mut groups: Vec<Group> = floor.into_iter().map(group).collect();
+        let mut n_measured = 0.0;
+        for (_, own) in &points {
             match own {
-                Deviation::Group(group) => count[*group] += 1.0,
+                Deviation::Group(group) => groups[*group].count += 1.0,
                 Deviation::Of(_) => continue,
                 Deviation::Given | Deviation::Computed(_) => {}
             }
             n_measured += 1.0;
         }
-        Concentrated { deviations, count, floor, n_measured }
+        for (number, group) in groups.iter_mut().enumerate() {
+            let own = points.iter().enumerate();
+            let own = own.filter(|(_, (_, own))| *own == Deviation::Group(number));
+            let is_normal = own.clone().all(|(_, (law, _))| *law == Law::Normal);
+            group.searched = if is_normal { Vec::new() } else { own.map(|own| own.0).collect() };
+        }
+        Concentrated { points, groups, n_measured }
     }
 
-    fn scales(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> Scales {
+    /// Those of a simulation; with corners of densities rounded off, as steps of least squares need it.
+    fn scales(&self, [simulated, measured, weights]: [&[f64]; 3], is_rounded: bool) -> Scales {
         let mut scales = Scales {
             given: 0.0,
-            variance: vec![0.0; self.count.len()],
+            given_squares: 0.0,
+            variance: vec![0.0; self.groups.len()],
             computed: 0.0,
             computed_squares: 0.0,
         };
-        for (u, own) in super::differences(simulated, measured, weights).zip(&self.deviations) {
+        let twice = |law: Law, u: f64| if is_rounded { law.rounded(u) } else { law.twice(u) };
+        let differences = super::differences(simulated, measured, weights);
+        for (k, (u, (law, own))) in differences.zip(&self.points).enumerate() {
             match *own {
-                Deviation::Given => scales.given += u * u,
+                Deviation::Given if *law == Law::Poisson => {
+                    scales.given += Law::twice_of_count(simulated[k], measured[k]);
+                    let root = root_of_count(simulated[k]);
+                    scales.given_squares +=
+                        elementary::powi((simulated[k] - measured[k]) / root, 2);
+                }
+                Deviation::Given => {
+                    scales.given += twice(*law, u);
+                    scales.given_squares += law.square(u, is_rounded);
+                }
                 Deviation::Group(group) => scales.variance[group] += u * u,
                 Deviation::Computed(at) => {
                     let sigma = simulated[at];
-                    let square = (u / sigma) * (u / sigma);
+                    let own = u / sigma;
+                    let square = law.square(own, is_rounded);
                     // The logarithm of what is no deviation is not a number: the simulation has failed.
-                    scales.computed += square + 2.0 * elementary::ln(sigma);
-                    scales.computed_squares += square + 0.5 * (square - 1.0) * (square - 1.0);
+                    scales.computed += twice(*law, own) + 2.0 * elementary::ln(sigma);
+                    let of_scale = (square - 1.0) * (square - 1.0) / law.information_of_scale();
+                    scales.computed_squares += square + of_scale;
                 }
                 Deviation::Of(_) => {}
             }
         }
-        for ((variance, n), floor) in scales.variance.iter_mut().zip(&self.count).zip(&self.floor) {
+        for (variance, group) in scales.variance.iter_mut().zip(&self.groups) {
             // Not `max`, which would let NaN, the mark of a failed simulation, pass.
-            let own = *variance / n;
-            *variance = if own < floor * floor { floor * floor } else { own };
+            let own = *variance / group.count;
+            *variance =
+                if own < group.floor * group.floor { group.floor * group.floor } else { own };
+            if group.searched.is_empty() {
+                scales.given_squares += group.count;
+                continue;
+            }
+            let u = |k: &usize| (self.points[*k].0, weights[*k] * (measured[*k] - simulated[*k]));
+            let points: Vec<(Law, f64)> = group.searched.iter().map(u).collect();
+            let scale = likeliest(&points, group.floor, variance.sqrt(), is_rounded);
+            *variance = scale * scale;
+            for (law, u) in points {
+                scales.given += twice(law, u / scale) - 1.0;
+                scales.given_squares += law.square(u / scale, is_rounded);
+            }
         }
         scales
     }
 
     /// Twice the part of -log L that depends on the parameters, but for a constant.
     fn exponent(&self, scales: &Scales) -> f64 {
-        let groups = scales.variance.iter().zip(&self.count);
-        let of_groups = groups.map(|(variance, n)| n * elementary::ln(*variance)).sum::<f64>();
-        scales.given + scales.computed + of_groups
+        let groups = scales.variance.iter().zip(&self.groups);
+        let of_groups = groups.map(|(variance, own)| own.count * elementary::ln(*variance));
+        scales.given + scales.computed + of_groups.sum::<f64>()
+    }
+}
+
+/// The standard deviation of a count; not 0, by which residuals are divided.
+fn root_of_count(expected: f64) -> f64 {
+    if expected < f64::MIN_POSITIVE { f64::MIN_POSITIVE.sqrt() } else { expected.sqrt() }
+}
+
+/// The most likely scale of points, Σ u ψ(u) = n with u in units of it, but not less than `floor`. The
+/// sum falls with the scale, so that the root is between two scales, and halving finds it.
+fn likeliest(points: &[(Law, f64)], floor: f64, start: f64, is_rounded: bool) -> f64 {
+    let n = points.len() as f64;
+    let excess = |scale: f64| {
+        points.iter().map(|(law, u)| law.square(u / scale, is_rounded)).sum::<f64>() - n
+    };
+    if start.is_nan() || excess(floor) <= 0.0 {
+        return if start.is_nan() { f64::NAN } else { floor };
+    }
+    let (mut low, mut high) = (floor, start);
+    while excess(high) > 0.0 && high < f64::MAX {
+        (low, high) = (high, 2.0 * high);
+    }
+    loop {
+        let middle = (low * high).sqrt();
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if excess(middle) > 0.0 { low = middle } else { high = middle }
     }
 }
 
 impl Fitness for Concentrated {
     fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64 {
-        let scales = self.scales(simulated, measured, weights);
-        let of_points = weights.iter().zip(&self.deviations);
-        let of_points = of_points.filter(|(_, own)| !matches!(own, Deviation::Of(_)));
-        let constant: f64 = self.count.iter().sum::<f64>()
-            + self.n_measured * elementary::ln(std::f64::consts::TAU)
-            - 2.0 * of_points.map(|(w, _)| elementary::ln(*w)).sum::<f64>();
+        let scales = self.scales([simulated, measured, weights], false);
+        let of_points = weights.iter().zip(measured).zip(&self.points);
+        let of_points = of_points.filter(|(_, (_, own))| !matches!(own, Deviation::Of(_)));
+        let is_normal = |law: Law| law == Law::Normal;
+        let others = of_points.clone().filter(|(_, (law, _))| !is_normal(*law));
+        let others = others.map(|((_, y), (law, _))| law.constant(*y) - Law::Normal.constant(*y));
+        let constant: f64 = self.groups.iter().map(|own| own.count).sum::<f64>()
+            + self.n_measured * Law::Normal.constant(0.0)
+            - 2.0 * of_points.map(|((w, _), _)| elementary::ln(*w)).sum::<f64>()
+            + others.sum::<f64>();
         checked(0.5 * (self.exponent(&scales) + constant))
     }
 
@@ -136,28 +213,25 @@ impl Fitness for Concentrated {
         residuals: &mut [f64],
         factors: &mut [f64],
     ) -> bool {
-        let scales = self.scales(simulated, measured, weights);
+        let scales = self.scales([simulated, measured, weights], true);
         let n = measured.len() as f64;
         let root = elementary::exp(0.5 * self.exponent(&scales) / n);
-        let square = scales.given + self.count.iter().sum::<f64>() + scales.computed_squares;
-        let kappa = (n / square).sqrt();
+        let kappa = (n / (scales.given_squares + scales.computed_squares)).sqrt();
         let is_computed = self.n_measured < n;
         let per = if is_computed { 1.0 / kappa } else { kappa };
-        for (k, &deviation) in self.deviations.iter().enumerate() {
-            let own = match deviation {
-                Deviation::Given => 1.0,
-                Deviation::Group(group) => scales.variance[group].sqrt(),
-                Deviation::Computed(at) => simulated[at],
-                Deviation::Of(point) => {
-                    let sigma = simulated[k];
-                    let u = weights[point] / sigma * (simulated[point] - measured[point]);
-                    residuals[k] = root * kappa * (u * u - 1.0) / SQRT_2;
-                    factors[k] = -root / per * SQRT_2 / sigma;
-                    continue;
-                }
-            };
-            residuals[k] = root * kappa * weights[k] / own * (simulated[k] - measured[k]);
-            factors[k] = root / per * weights[k] / own;
+        for (k, &(law, deviation)) in self.points.iter().enumerate() {
+            if let Deviation::Of(point) = deviation {
+                let sigma = simulated[k];
+                let u = weights[point] / sigma * (simulated[point] - measured[point]);
+                let information = law.information_of_scale().sqrt();
+                residuals[k] = root * kappa * (law.square(u, true) - 1.0) / information;
+                factors[k] = -root / per * information / sigma;
+                continue;
+            }
+            let own = self.own_scale(k, (simulated, weights), &scales);
+            let factor = law.factor(weights[k] / own * (simulated[k] - measured[k]));
+            residuals[k] = root * kappa * weights[k] / own * factor * (simulated[k] - measured[k]);
+            factors[k] = root / per * weights[k] / own * factor;
         }
         true
     }
@@ -168,23 +242,39 @@ impl Fitness for Concentrated {
         measured: &[f64],
         weights: &[f64],
     ) -> Option<Vec<f64>> {
-        let scales = self.scales(simulated, measured, weights);
-        let own = |(k, (w, deviation)): (usize, (&f64, &Deviation))| match *deviation {
-            Deviation::Given => *w,
-            Deviation::Group(group) => w / scales.variance[group].sqrt(),
-            Deviation::Computed(at) => w / simulated[at],
-            Deviation::Of(_) => SQRT_2 / simulated[k],
+        let scales = self.scales([simulated, measured, weights], false);
+        let own = |(k, (law, deviation)): (usize, &(Law, Deviation))| match deviation {
+            Deviation::Of(_) => law.information_of_scale().sqrt() / simulated[k],
+            _ => {
+                weights[k] / self.own_scale(k, (simulated, weights), &scales)
+                    * law.root_information()
+            }
         };
-        Some(weights.iter().zip(&self.deviations).enumerate().map(own).collect())
+        Some(self.points.iter().enumerate().map(own).collect())
+    }
+}
+
+impl Concentrated {
+    /// The scale of the errors of a measured point, in units of the weighted points.
+    fn own_scale(&self, k: usize, (simulated, weights): (&[f64], &[f64]), scales: &Scales) -> f64 {
+        match self.points[k] {
+            (Law::Poisson, _) => weights[k] * root_of_count(simulated[k]),
+            (_, Deviation::Group(group)) => scales.variance[group].sqrt(),
+            (_, Deviation::Computed(at)) => simulated[at],
+            (_, Deviation::Given | Deviation::Of(_)) => 1.0,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::SQRT_2;
 
     fn cases() -> [Concentrated; 3] {
-        let all = |g: [Deviation; 6], n| Concentrated::new(g.to_vec(), vec![1e-9; n]);
+        let all = |g: [Deviation; 6], n| {
+            Concentrated::new(g.map(|own| (Law::Normal, own)).to_vec(), vec![1e-9; n])
+        };
         let (a, b, given) = (Deviation::Group(0), Deviation::Group(1), Deviation::Given);
         [all([a; 6], 1), all([a, a, a, b, b, b], 2), all([given, given, a, a, a, a], 1)]
     }
@@ -238,13 +328,15 @@ mod tests {
     #[test]
     fn deviations_that_the_model_computes_are_points_of_their_own() {
         let own = Concentrated::new(
-            vec![
+            [
                 Deviation::Computed(3),
                 Deviation::Computed(4),
                 Deviation::Given,
                 Deviation::Of(0),
                 Deviation::Of(1),
-            ],
+            ]
+            .map(|own| (Law::Normal, own))
+            .to_vec(),
             Vec::new(),
         );
         let (measured, weights) = ([1.0, 2.0, 3.0, 0.0, 0.0], [1.0, 0.5, 2.0, 1.0, 1.0]);

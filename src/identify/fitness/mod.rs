@@ -1,6 +1,7 @@
 //! Fitness functions: how far the simulation is from the measurement; smaller is better.
 
 mod concentrated;
+mod law;
 mod log_likelihood;
 mod normalized;
 mod relative;
@@ -9,6 +10,7 @@ mod root_mean_square;
 mod sum_of_squares;
 
 pub(crate) use concentrated::{Concentrated, Deviation};
+pub use law::Law;
 pub use sum_of_squares::sum_of_squares;
 
 use crate::ga::FAILED_FITNESS;

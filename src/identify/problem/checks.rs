@@ -16,6 +16,7 @@ use super::{
 };
 use crate::diag::suggest;
 use crate::elementary;
+use crate::fitness::Law;
 use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::table::significant;
 
@@ -128,7 +129,7 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
             rows: &series.rows,
             first: start,
             has_sigma: series.sigma.is_known(),
-            robust: statistics.robust,
+            robust: statistics.robust || series.law != Law::Normal,
             is_deviation: matches!(series.role, super::Role::Deviation(_)),
         }
     };

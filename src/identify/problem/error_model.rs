@@ -3,7 +3,7 @@
 use super::{Finding, FindingKind, Problem, Role, Series, Severity};
 use crate::diag::Fault;
 use crate::fault;
-use crate::fitness::{Concentrated, Deviation, Fitness};
+use crate::fitness::{Concentrated, Deviation, Fitness, Law};
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -11,6 +11,8 @@ use std::sync::Arc;
 /// A deviation that is estimated is at least this many times the error of the simulation: a model
 /// that passes through all points of a series would else be infinitely likely.
 const FLOOR: f64 = 10.0;
+/// The name of the likelihood among fitness functions.
+pub const LIKELIHOOD: &str = "negative log-likelihood";
 /// Fewer points than these have no deviation of their own to be estimated.
 const FEW: usize = 3;
 
@@ -92,7 +94,7 @@ pub enum ErrorModel {
     OneVariance,
     /// All deviations are known.
     Known,
-    /// All are known or computed by the model, some computed.
+    /// All are known or computed by the model; some computed, or not all errors normal.
     Computed,
     /// Some are estimated with the parameters.
     Estimated,
@@ -104,7 +106,7 @@ impl ErrorModel {
         let series = &problem.series;
         if series.iter().any(|series| series.sigma.is_estimated()) {
             ErrorModel::Estimated
-        } else if series.iter().any(|series| matches!(series.sigma, Sigma::Variable(_))) {
+        } else if is_computed(series) {
             ErrorModel::Computed
         } else if !series.is_empty() && series.iter().all(|series| series.sigma.is_known()) {
             ErrorModel::Known
@@ -113,10 +115,16 @@ impl ErrorModel {
         }
     }
 
-    /// Whether the likelihood is what is minimized, as the deviations change with the parameters.
+    /// Whether the likelihood is what is minimized: the deviations change with the parameters, or it is
+    /// not that of normal errors.
     pub fn is_likelihood(self) -> bool {
         matches!(self, ErrorModel::Computed | ErrorModel::Estimated)
     }
+}
+
+/// Whether the likelihood of series is no sum of squares though no deviation is estimated.
+fn is_computed(series: &[Series]) -> bool {
+    series.iter().any(|own| matches!(own.sigma, Sigma::Variable(_)) || own.law != Law::Normal)
 }
 
 /// Decides about the series without sigma: where sigmas of others are given, or units differ, they
@@ -169,14 +177,14 @@ fn firsts(series: &[Series]) -> Vec<usize> {
 }
 
 /// The likelihood of series of which some deviations are computed by the model, or estimated, one for
-/// each variable.
+/// each variable, or of which some errors are not normal.
 ///
 /// # Errors
 ///
 /// A variable with too few points for a deviation of its own, by its name.
 pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (String, Fault)> {
     let mut names: Vec<&str> = Vec::new();
-    let (mut deviations, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
+    let (mut points, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
     let firsts = firsts(series);
     for (k, own) in series.iter().enumerate() {
         let group = own.deviation().map(|deviation| {
@@ -190,11 +198,13 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
             sizes[group].extend(own.weights().iter().zip(&own.y).map(|(weight, y)| weight * y));
         }
         let computed = (k..series.len()).find(|of| series[*of].role == Role::Deviation(of - k));
-        deviations.extend((0..own.y.len()).map(|point| match (own.role, computed, group) {
-            (Role::Deviation(back), ..) => Deviation::Of(firsts[k - back] + point),
-            (_, Some(computed), _) => Deviation::Computed(firsts[computed] + point),
-            (_, _, Some(group)) => Deviation::Group(group),
-            _ => Deviation::Given,
+        points.extend((0..own.y.len()).map(|point| match (own.role, computed, group) {
+            (Role::Deviation(back), ..) => {
+                (series[k - back].law, Deviation::Of(firsts[k - back] + point))
+            }
+            (_, Some(computed), _) => (own.law, Deviation::Computed(firsts[computed] + point)),
+            (_, _, Some(group)) => (own.law, Deviation::Group(group)),
+            _ => (own.law, Deviation::Given),
         }));
     }
     if let Some((name, values)) = names.iter().zip(&sizes).find(|(_, values)| values.len() < FEW) {
@@ -209,5 +219,5 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
         let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
         (FLOOR * noise * square.sqrt()).max(1e-150)
     };
-    Ok(Box::new(Concentrated::new(deviations, sizes.iter().map(floor).collect())))
+    Ok(Box::new(Concentrated::new(points, sizes.iter().map(floor).collect())))
 }

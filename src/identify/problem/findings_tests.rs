@@ -67,6 +67,7 @@ fn problem(
         role: Default::default(),
         relative: Vec::new(),
         sigma: sigma.clone(),
+        law: crate::fitness::Law::Normal,
         column: String::new(),
         x_column: String::new(),
         rows: Vec::new(),

@@ -67,7 +67,7 @@ pub use curve::draw_curves;
 pub use ending::OtherMinimum;
 pub use ending::{Ending, EndingKind, SolvedDescent};
 pub use error_model::ErrorModel;
-pub use error_model::{Sigma, SigmaFormula, decide, likelihood};
+pub use error_model::{LIKELIHOOD, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::{Evaluation, Status};
 pub use experiment::{Experiment, ModelSimulator, Observation, diagnosed};
 pub use failure::{Failed, FailureKind};
@@ -107,7 +107,7 @@ pub use text::modelica_number;
 pub(crate) use unpacked::unpacked;
 
 use super::Descriptions;
-use super::fitness::Fitness;
+use super::fitness::{Fitness, Law};
 use crate::ga::optimizer::Method;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -196,8 +196,10 @@ pub struct Series {
     pub weight: f64,
     /// What the standard deviations of the points are proportional to; empty where they are equal.
     pub relative: Vec<f64>,
-    /// The standard deviation of the errors.
+    /// The standard deviation of the errors, or another scale of their density.
     pub sigma: Sigma,
+    /// How the errors are distributed.
+    pub law: Law,
     /// The column of the data that Y was read from.
     pub column: String,
     /// The column that X was read from; empty where there is none.
@@ -246,7 +248,7 @@ impl Series {
     }
 
     /// The name of the standard deviation that is estimated for it; series with one name share it.
-    pub(crate) fn deviation(&self) -> Option<&str> {
+    pub fn deviation(&self) -> Option<&str> {
         match &self.sigma {
             Sigma::Shared(name) => Some(name),
             sigma => sigma.is_estimated().then_some(self.y_name.as_str()),
@@ -310,6 +312,11 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// Whether the errors of all series are normal.
+    pub(crate) fn is_normal(&self) -> bool {
+        self.series.iter().all(|series| series.law == Law::Normal)
+    }
+
     /// Number of points of all series.
     pub(crate) fn n_points(&self) -> usize {
         self.series.iter().map(|series| series.x.len()).sum()

@@ -337,8 +337,7 @@ fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
         return None;
     }
     if ErrorModel::of(&run.problem).is_likelihood() {
-        let value =
-            run.observed.best.as_ref()?.fitness + super::inference::logarithms(&run.problem);
+        let value = run.observed.best.as_ref()?.fitness + super::inference::beside(&run.problem);
         return Some(value).filter(|value| value.is_finite());
     }
     let n = statistics.residuals.len() as f64;
@@ -350,7 +349,7 @@ fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     };
     let value = of_residuals - of_weights
         + 0.5 * n * elementary::ln(std::f64::consts::TAU)
-        + super::inference::logarithms(&run.problem);
+        + super::inference::beside(&run.problem);
     value.is_finite().then_some(value)
 }
 

@@ -42,6 +42,7 @@ pub(super) fn problem(
         role: Default::default(),
         relative: Vec::new(),
         sigma: Sigma::Unknown,
+        law: crate::fitness::Law::Normal,
         column: String::new(),
         x_column: String::new(),
         rows: Vec::new(),

@@ -44,6 +44,7 @@ fn analysed(
             role: Default::default(),
             relative: Vec::new(),
             sigma: crate::problem::Sigma::Unknown,
+            law: crate::fitness::Law::Normal,
             column: String::new(),
             x_column: String::new(),
             rows: Vec::new(),

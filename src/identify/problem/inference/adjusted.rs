@@ -7,8 +7,10 @@
 
 use super::{Constraint, PortableConstraint};
 use crate::diag::Fault;
+use crate::fitness::Law;
 use crate::problem::{
-    ErrorModel, Failed, FailureKind, Portable, Problem, Role, Series, Sigma, Simulate, likelihood,
+    ErrorModel, Failed, FailureKind, LIKELIHOOD, Portable, Problem, Role, Series, Sigma, Simulate,
+    likelihood,
 };
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
@@ -38,8 +40,24 @@ pub enum Distribution {
         /// median divided and multiplied by it.
         factor: f64,
     },
+    /// Of Laplace.
+    Laplace {
+        /// Median.
+        median: f64,
+        /// Mean absolute deviation from it.
+        scale: f64,
+    },
+    /// The logarithm is of Laplace.
+    LogLaplace {
+        /// Median.
+        median: f64,
+        /// Exponential of the scale of the logarithm.
+        factor: f64,
+    },
     /// Uniform over the range, whatever the scale of the search.
     Uniform,
+    /// The logarithm is uniform over the range.
+    LogUniform,
 }
 
 /// The prior of a parameter.
@@ -49,6 +67,8 @@ pub struct Prior {
     pub parameter: usize,
     /// Its distribution.
     pub distribution: Distribution,
+    /// What is added to -log L, as the density is one of another coordinate.
+    pub constant: f64,
 }
 
 /// What is added to a problem.
@@ -63,16 +83,43 @@ pub struct Adjustments {
 }
 
 impl Prior {
-    /// What the point of this prior is compared with, the standard deviation, and whether it is
-    /// the logarithm that counts; `None` for a uniform one.
-    pub fn point(&self) -> Option<(f64, f64, bool)> {
+    /// What the point of this prior is compared with, and the scale of its density; `None` for a
+    /// uniform one.
+    pub fn point(&self) -> Option<(f64, f64)> {
         match self.distribution {
-            Distribution::Normal { mean, sd } => Some((mean, sd, false)),
-            Distribution::LogNormal { median, factor } => {
-                Some((elementary::ln(median), elementary::ln(factor), true))
+            Distribution::Normal { mean: centre, sd: scale }
+            | Distribution::Laplace { median: centre, scale } => Some((centre, scale)),
+            Distribution::LogNormal { median, factor }
+            | Distribution::LogLaplace { median, factor } => {
+                Some((elementary::ln(median), elementary::ln(factor)))
             }
-            Distribution::Uniform => None,
+            Distribution::Uniform | Distribution::LogUniform => None,
         }
+    }
+
+    /// Whether it is the logarithm that counts.
+    pub fn is_logarithmic(&self) -> bool {
+        matches!(
+            self.distribution,
+            Distribution::LogNormal { .. }
+                | Distribution::LogLaplace { .. }
+                | Distribution::LogUniform
+        )
+    }
+
+    /// The density of its point.
+    fn law(&self) -> Law {
+        match self.distribution {
+            Distribution::Laplace { .. } | Distribution::LogLaplace { .. } => Law::Laplace,
+            _ => Law::Normal,
+        }
+    }
+
+    /// Centre and standard deviation.
+    pub(crate) fn spread(&self) -> Option<(f64, f64)> {
+        let (centre, scale) = self.point()?;
+        let of_scale = if self.law() == Law::Laplace { std::f64::consts::SQRT_2 } else { 1.0 };
+        Some((centre, of_scale * scale))
     }
 }
 
@@ -104,8 +151,8 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), (Cause, F
     if let Some(last) = weighed.last().filter(|_| ErrorModel::of(problem).is_likelihood()) {
         // The likelihood counts the points of the priors as well.
         let all = likelihood(&problem.series, problem.noise);
-        problem.objectives[0].1 =
-            all.map_err(|(_, fault)| (Cause::Prior(last.parameter), fault))?;
+        let all = all.map_err(|(_, fault)| (Cause::Prior(last.parameter), fault))?;
+        problem.objectives[0] = (LIKELIHOOD.to_owned(), all);
     }
     problem.inference.priors = added.priors;
     problem.inference.logarithmic = added.logarithmic;
@@ -178,13 +225,13 @@ fn logarithms(
 /// A prior as a measured point.
 fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
     let name = &problem.parameters[prior.parameter].name;
-    let point =
-        prior.point().filter(|(mean, sd, _)| mean.is_finite() && sd.is_finite() && *sd > 0.0);
-    let Some((mean, sd, logarithm)) = point else {
+    let point = prior.point().filter(|(mean, sd)| mean.is_finite() && sd.is_finite() && *sd > 0.0);
+    let logarithm = prior.is_logarithmic();
+    let Some((mean, sd)) = point else {
         bail!(BAD_OPTION, "the prior of `{name}` has no width or no centre"; help: "write `prior = {{ mean = 1, sd = 0.1 }}` or `prior = {{ median = 1, factor = 1.5 }}`, the factor above 1")
     };
     if logarithm && problem.parameters[prior.parameter].min <= 0.0 {
-        bail!(BAD_OPTION, "the prior of `{name}` is log-normal, but its range starts at \
+        bail!(BAD_OPTION, "the prior of `{name}` is one of its logarithm, but its range starts at \
                            {}", problem.parameters[prior.parameter].min; help: "give a positive minimum");
     }
     Ok(Series {
@@ -200,6 +247,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         weight: 1.0,
         relative: Vec::new(),
         sigma: Sigma::Given(vec![sd]),
+        law: prior.law(),
         column: String::new(),
         x_column: String::new(),
         rows: Vec::new(),
@@ -272,11 +320,7 @@ impl Shared {
         }
         for (value, prior) in out[self.points..].iter_mut().zip(&self.priors) {
             let own = parameters[prior.parameter];
-            *value = if matches!(prior.distribution, Distribution::LogNormal { .. }) {
-                elementary::ln(own)
-            } else {
-                own
-            };
+            *value = if prior.is_logarithmic() { elementary::ln(own) } else { own };
         }
         Ok(())
     }
@@ -323,8 +367,8 @@ impl Simulate for Adjusted {
         }
         for (row, prior) in rest.chunks_exact_mut(n).zip(&self.shared.priors) {
             row.fill(0.0);
-            let logarithm = matches!(prior.distribution, Distribution::LogNormal { .. });
-            row[prior.parameter] = if logarithm { 1.0 / parameters[prior.parameter] } else { 1.0 };
+            row[prior.parameter] =
+                if prior.is_logarithmic() { 1.0 / parameters[prior.parameter] } else { 1.0 };
         }
         self.shared.finish(parameters, out)?;
         Ok(true)

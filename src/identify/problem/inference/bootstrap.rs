@@ -100,8 +100,8 @@ pub struct Bootstrapped {
 }
 
 /// Why there is none with deviations that change with the parameters, which the fits hold.
-const OF_COMPUTED: &str = "There is no bootstrap where the model computes the standard deviations: \
-     the profiles and the posterior tell how well the parameters are known.";
+const OF_COMPUTED: &str = "There is no bootstrap where the model computes the standard deviations, or \
+     where errors are not normal: the profiles and the posterior tell how well the parameters are known.";
 
 /// The bootstrap; `None` where it is refused.
 pub fn bootstrap(
@@ -111,7 +111,7 @@ pub fn bootstrap(
     refusals: &mut Vec<String>,
 ) -> Result<Option<Bootstrap>, Fault> {
     let (problem, evaluation) = (&run.problem, &run.evaluation);
-    if ErrorModel::of(problem) == ErrorModel::Computed {
+    if ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal() {
         refusals.push(OF_COMPUTED.to_owned());
         return Ok(None);
     }

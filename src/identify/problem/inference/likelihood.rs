@@ -1,7 +1,7 @@
 //! The likelihood of a fit with normal errors.
 
 use crate::elementary;
-use crate::problem::{ErrorModel, Problem, Run, Series};
+use crate::problem::{ErrorModel, Problem, Role, Run, Series, likelihood};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -20,9 +20,29 @@ pub struct Likelihood {
 
 /// The sum of the logarithms of log-normal data: what the density of a value is less than that of its
 /// logarithm.
-pub fn logarithms(problem: &Problem) -> f64 {
+fn logarithms(problem: &Problem) -> f64 {
     let own = problem.inference.logarithmic.iter();
     own.filter_map(|k| problem.series.get(*k)).flat_map(|series| &series.y).sum()
+}
+
+/// -log L of the data alone where errors are not normal.
+fn of_data(problem: &Problem, simulated: &[f64]) -> Option<f64> {
+    if problem.is_normal() {
+        return None;
+    }
+    let is_prior = |series: &&Series| series.role == Role::Prior;
+    let data: Vec<Series> = problem.series.iter().filter(|own| !is_prior(own)).cloned().collect();
+    let fitness = likelihood(&data, problem.noise).ok()?;
+    let measured: Vec<f64> = data.iter().flat_map(|series| series.y.clone()).collect();
+    let weights: Vec<f64> = data.iter().flat_map(Series::weights).collect();
+    Some(fitness.fitness(&simulated[..measured.len()], &measured, &weights))
+}
+
+/// What -log L has beside the objective: densities of log-normal data are those of the values, and
+/// densities of priors those of the coordinates in which they are given.
+pub fn beside(problem: &Problem) -> f64 {
+    let priors = problem.inference.priors.iter();
+    logarithms(problem) + priors.map(|prior| prior.constant).sum::<f64>()
 }
 
 impl Likelihood {
@@ -52,7 +72,10 @@ impl Likelihood {
             ErrorModel::Known | ErrorModel::Computed => (0.5 * square, 0),
             ErrorModel::Estimated => (0.5 * square, names.len()),
         };
-        let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU) - logarithms(problem);
+        let log = match of_data(problem, &simulated) {
+            Some(negative) => -negative,
+            None => of_weights - of_residuals - 0.5 * n * elementary::ln(TAU),
+        } - logarithms(problem);
         let estimated = values.len() + deviations;
         let known_sigma = matches!(error_model, ErrorModel::Known | ErrorModel::Computed);
         let found = Likelihood { log, points: measured.len(), estimated, known_sigma };

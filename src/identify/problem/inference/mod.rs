@@ -30,7 +30,7 @@ pub use constraint::Constraint;
 pub(crate) use constraint::PortableConstraint;
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
-pub use likelihood::{Likelihood, logarithms};
+pub use likelihood::{Likelihood, beside};
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, CurveRequest, Curves, ModelPredictions, Predict, Reach};
@@ -106,12 +106,13 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
         };
         found.bands = parts.part(BANDS, make)?;
     }
-    let is_computed = ErrorModel::of(&run.problem) == ErrorModel::Computed;
+    let is_computed =
+        ErrorModel::of(&run.problem) == ErrorModel::Computed || !run.problem.is_normal();
     if is_computed && requested.design.is_some() {
         // What further points would tell of their deviations is not counted.
         parts.refusals.push(
             "There is no plan for the next measurement where the model computes the standard \
-             deviations."
+             deviations, or where errors are not normal."
                 .to_owned(),
         );
     }

@@ -22,7 +22,8 @@ pub fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
     };
     let variances = local.information.variances();
     for prior in &problem.inference.priors {
-        let Some((mean, sd, logarithm)) = prior.point() else { continue };
+        let Some((mean, sd)) = prior.spread() else { continue };
+        let logarithm = prior.is_logarithmic();
         let name = &problem.parameters[prior.parameter].name;
         let value = local.values[prior.parameter];
         let own = if logarithm { elementary::ln(value) } else { value };

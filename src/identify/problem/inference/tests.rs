@@ -84,6 +84,7 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         role: Default::default(),
         relative: Vec::new(),
         sigma: Sigma::Unknown,
+        law: crate::fitness::Law::Normal,
         column: "y".into(),
         x_column: String::new(),
         rows: Vec::new(),
@@ -320,8 +321,10 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     let mut problem = problem(line, &x, &y, &[[-10.0, 10.0], [-10.0, 10.0]]);
     problem.series[0].sigma = Sigma::Given(vec![0.2; 6]);
     problem.objectives[0].0 = "sum_of_squares".into();
-    let prior =
-        |parameter, mean, sd| Prior { parameter, distribution: Distribution::Normal { mean, sd } };
+    let prior = |parameter, mean, sd| {
+        let distribution = Distribution::Normal { mean, sd };
+        Prior { parameter, distribution, constant: 0.0 }
+    };
     let priors = vec![prior(0, 2.0, 0.1), prior(1, 0.3, 1e-3)];
     adjust(&mut problem, Adjustments { priors, ..Adjustments::default() }).unwrap();
     let run = finished(problem);
@@ -357,7 +360,7 @@ fn priors_need_known_deviations_and_a_width() {
         if known {
             problem.series[0].sigma = Sigma::Given(vec![1.0; 2]);
         }
-        let priors = vec![Prior { parameter: 0, distribution }];
+        let priors = vec![Prior { parameter: 0, distribution, constant: 0.0 }];
         let added = Adjustments { priors, ..Adjustments::default() };
         adjust(&mut problem, added).map_err(|(_, fault)| fault.message)
     };

@@ -6,6 +6,7 @@
 //! Where a distribution does not exist (no degree of freedom) the answer is NaN, which no test
 //! takes for significant.
 
+pub(crate) use super::special_functions::ln_gamma;
 use super::special_functions::{beta_tails, falls_to, gamma_tails, ln_binomial};
 use crate::elementary;
 

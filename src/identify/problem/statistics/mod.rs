@@ -102,6 +102,8 @@ pub struct Statistics {
     pub(super) shares: Vec<f64>,
     /// What derivatives of the points are multiplied with to become sensitivities.
     scales: Vec<f64>,
+    /// The weighted sum of squares, as the variance is estimated from it.
+    square: f64,
     /// The sum of squares that least squares minimize.
     pub(super) searched: f64,
     /// Whether it is a likelihood with deviations that the model computes.
@@ -132,9 +134,7 @@ impl Statistics {
         if self.believed || self.robust {
             return self.quantile;
         }
-        let pairs = self.residuals.iter().zip(&self.shares);
-        let square: f64 = pairs.map(|(r, share)| share * r * r).sum();
-        self.quantile * (self.variance * self.freedom / square).sqrt()
+        self.quantile * (self.variance * self.freedom / self.square).sqrt()
     }
 
     /// The weighted sum of squares of the data, some points left out; equal series count once. A prior
@@ -182,6 +182,7 @@ impl Statistics {
             simulations,
             shares: data.shares.clone(),
             scales: data.scales.clone(),
+            square: data.square,
             searched: data.searched,
             error_model: ErrorModel::of(problem),
             rank_tolerance: rank_tolerance(problem.noise * fineness),
@@ -367,7 +368,11 @@ impl Data {
         let scales = weights.iter().zip(&shares).zip(is_deviation);
         let scales = scales.map(|((w, s), whole)| if whole { *w } else { w * s.sqrt() }).collect();
         let residuals = evaluation.standard_residuals(problem, simulated);
-        let square = residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum();
+        let square = match problem.is_normal() {
+            true => residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum(),
+            // The most likely scales make it so.
+            false => shares.iter().sum(),
+        };
         let searched = evaluation.searched_sum(problem, simulated);
         Data { weights, shares, scales, residuals, square, searched }
     }
@@ -477,10 +482,8 @@ impl Statistics {
         }
         // Residuals at the end of a range contain the misfit that the end causes: an error estimated
         // from them makes any distance one of less than the root of the degrees of freedom.
-        let pairs = self.residuals.iter().zip(&self.shares);
-        let square: f64 = pairs.map(|(r, share)| share * r * r).sum();
-        let left = square - pull * pull * self.variance;
-        Some(pull * (square / left.max(ROUNDING * square)).sqrt())
+        let left = self.square - pull * pull * self.variance;
+        Some(pull * (self.square / left.max(ROUNDING * self.square)).sqrt())
     }
 }
 
@@ -512,7 +515,7 @@ fn rise_of_squares(
     data: &Data,
     (best, row): (&[f64], &[f64]),
 ) -> f64 {
-    if ErrorModel::of(problem) == ErrorModel::Computed {
+    if ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal() {
         return 2.0 * (evaluation.objective(problem, row) - evaluation.objective(problem, best));
     }
     let measured = problem.series.iter().flat_map(|series| &series.y);

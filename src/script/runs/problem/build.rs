@@ -18,11 +18,11 @@ use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::fmi::import::Imported;
 use crate::ga::optimizer::METHODS;
 use crate::identify::Descriptions;
-use crate::identify::fitness::{FITNESSES, Fitness};
+use crate::identify::fitness::{FITNESSES, Fitness, Law};
 use crate::identify::problem::inference::{Cause, adjust};
 use crate::identify::problem::{
-    Experiment, Free, Inference, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS, Origins,
-    Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
+    Experiment, Free, Inference, LIKELIHOOD, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS,
+    Origins, Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::mat::MatFile;
 use crate::registry::{self, BAD_OPTION, Options};
@@ -350,10 +350,14 @@ fn experiments(
         all.rests.extend(rest::both(entry, &built.experiment));
         all.fitted.push(built.experiment);
         all.states.push(built.states);
-        let logarithmic = super::inference::logarithmic(entry).map_err(alone)?;
         let first = all.series.len();
-        all.logarithmic.extend(logarithmic.into_iter().map(|(own, place)| (first + own, place)));
         all.series.extend(built.series);
+        let laws = super::inference::error_laws(entry).map_err(alone)?;
+        for (number, own) in laws.iter().enumerate() {
+            let series = &mut all.series[first + number];
+            super::inference::distribute(series, own).map_err(alone)?;
+            all.logarithmic.extend(own.is_logarithmic.then_some((first + number, own.place)));
+        }
         for own in built.undecided {
             if !all.undecided.contains(&own) {
                 all.undecided.push(own);
@@ -393,7 +397,8 @@ fn objectives(
     series: &[Series],
     noise: f64,
 ) -> Result<Vec<Objective>, Vec<Diagnostic>> {
-    let is_computed = |own: &Series| matches!(own.sigma, Sigma::Variable(_));
+    let is_computed =
+        |own: &Series| matches!(own.sigma, Sigma::Variable(_)) || own.law != Law::Normal;
     if series.iter().any(|own| own.sigma.is_estimated() || is_computed(own)) {
         return likelihood_alone(file, series, noise).map_err(alone);
     }
@@ -431,7 +436,8 @@ fn objectives(
     Ok(objectives)
 }
 
-/// Deviations that are estimated or that the model computes have one objective: the likelihood.
+/// Deviations that are estimated or that the model computes, and errors that are not normal, have one
+/// objective: the likelihood.
 fn likelihood_alone(
     file: &ProblemFile,
     series: &[Series],
@@ -449,9 +455,9 @@ fn likelihood_alone(
     if !allowed {
         let fault = fault!(
             BAD_OPTION,
-            "a sigma that is estimated or computed by the model minimizes the negative \
-             log-likelihood and cannot be combined with another fitness";
-            help: "remove `fitness`, or give sigmas as numbers"
+            "a sigma that is estimated or computed by the model, and an `error` that is not normal, \
+             minimize the negative log-likelihood and cannot be combined with another fitness";
+            help: "remove `fitness`, or give sigmas as numbers and errors that are normal"
         );
         return Err(fault.at(file.places.at(&["fitness"])));
     }
@@ -460,7 +466,7 @@ fn likelihood_alone(
         let entry = file.experiment.iter().find(has_it);
         fault.at(entry.map_or(Span::NONE, |own| own.places.at(&["outputs", &name, "sigma"])))
     })?;
-    Ok(vec![("negative log-likelihood".to_owned(), likelihood)])
+    Ok(vec![(LIKELIHOOD.to_owned(), likelihood)])
 }
 
 type Objective = (String, Box<dyn Fitness>);

@@ -217,8 +217,11 @@ pub(super) struct ColumnEntry {
     pub weight: Option<WeightEntry>,
     /// Standard deviation of the measurement.
     pub sigma: Option<SigmaEntry>,
-    /// How the errors are distributed: `normal` or `lognormal`.
+    /// How the errors are distributed: `normal`, `lognormal`, `laplace`, `loglaplace`, `student` or
+    /// `poisson`.
     pub error: Option<String>,
+    /// Those of the distribution of Student.
+    pub degrees_of_freedom: Option<f64>,
     /// Seconds by which it is measured later: a number or a parameter.
     pub delay: Option<DelayEntry>,
     /// What its values are multiplied with, to see whether they fit better so.
@@ -364,20 +367,29 @@ pub(super) struct DesignEntry {
     pub outputs: IndexMap<String, f64>,
 }
 
-/// `"uniform"`, `{ mean, sd }` or `{ median, factor }`.
+/// `"uniform"`, `"loguniform"`, `{ mean, sd }` or `{ median, factor }`.
 #[derive(Debug, Clone)]
 pub(super) enum PriorEntry {
     Name(String),
     Numbers(PriorNumbers),
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PriorNumbers {
     pub mean: Option<f64>,
     pub sd: Option<f64>,
     pub median: Option<f64>,
     pub factor: Option<f64>,
+    /// Of a distribution of Laplace.
+    pub scale: Option<f64>,
+    /// `normal`, `laplace` or `uniform`.
+    pub distribution: Option<String>,
+    /// Of a uniform distribution; the range unless given.
+    pub min: Option<f64>,
+    pub max: Option<f64>,
+    /// The base of the logarithm whose density is meant.
+    pub base: Option<f64>,
 }
 
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -441,6 +453,7 @@ impl ColumnEntry {
             weight: None,
             sigma: None,
             error: None,
+            degrees_of_freedom: None,
             delay: None,
             tried: None,
         }

@@ -1,19 +1,20 @@
 //! What a problem file asks beyond the estimates, checked against its models.
 
 use super::file::{
-    BandsEntry, BootstrapEntry, DesignEntry, ExperimentEntry, PosteriorEntry, PriorEntry,
-    PriorNumbers, ProblemFile,
+    BandsEntry, BootstrapEntry, ColumnEntry, DesignEntry, ExperimentEntry, PosteriorEntry,
+    PriorEntry, PriorNumbers, ProblemFile,
 };
 use super::places::Places;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
+use crate::identify::fitness::Law;
 use crate::identify::problem::inference::{
     Adjustments, BootstrapSettings, Constraint, DesignSettings, Distribution, Inference,
     IntervalKind, ModelPredictions, PosteriorSettings, Prior, Resampling,
 };
-use crate::identify::problem::{Experiment, Free};
+use crate::identify::problem::{Experiment, Free, Series, Sigma};
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
-use crate::{bail, fault};
+use crate::{bail, elementary, fault};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -77,7 +78,6 @@ pub(super) fn adjustments(
     for (name, entry) in &file.parameters {
         let Some(prior) = &entry.prior else { continue };
         let place = file.places.at(&["parameters", name, "prior"]);
-        let distribution = distribution(name, prior).at(place)?;
         let of_experiments = format!("{name}@");
         let own = |free: &Free| free.name == *name || free.name.starts_with(&of_experiments);
         let places: Vec<usize> =
@@ -86,7 +86,11 @@ pub(super) fn adjustments(
             let fault = fault!(BAD_OPTION, "`{name}` has a prior but is not estimated");
             return Err(fault.help("add `min` and `max`").at(place));
         }
-        priors.extend(places.into_iter().map(|parameter| Prior { parameter, distribution }));
+        for parameter in places {
+            let range = [free[parameter].min, free[parameter].max];
+            let (distribution, constant) = distribution(name, prior, range).at(place)?;
+            priors.push(Prior { parameter, distribution, constant });
+        }
     }
     let names: Vec<String> = free.iter().map(|free| free.name.clone()).collect();
     let constraints = file.constraints.iter().enumerate().map(|(number, text)| {
@@ -97,47 +101,167 @@ pub(super) fn adjustments(
     Ok(Adjustments { priors, constraints, logarithmic })
 }
 
-/// The outputs of an experiment with log-normal errors, by their numbers among its series, and where that
-/// is written.
+/// How the errors of an output are distributed.
+pub(super) struct ErrorLaw {
+    pub law: Law,
+    /// Whether it is the logarithm whose errors these are.
+    pub is_logarithmic: bool,
+    /// Where that is written.
+    pub place: Span,
+}
+
+/// Degrees of freedom of the distribution of Student unless the file says otherwise.
+const FREEDOM: f64 = 4.0;
+
+/// How the errors of the outputs of an experiment are distributed.
 ///
 /// # Errors
 ///
-/// Other kinds of errors.
-pub(super) fn logarithmic(entry: &ExperimentEntry) -> Result<Vec<(usize, Span)>, Diagnostic> {
-    let mut logarithmic = Vec::new();
-    for (number, (name, output)) in entry.all_outputs().enumerate() {
-        let place = entry.places.at(&["outputs", name, "error"]);
-        match output.error.as_deref() {
-            None | Some("normal") => {}
-            Some("lognormal") => logarithmic.push((number, place)),
+/// Other distributions, and what they do not have.
+pub(super) fn error_laws(entry: &ExperimentEntry) -> Result<Vec<ErrorLaw>, Diagnostic> {
+    let one = |(name, output): (&String, ColumnEntry)| {
+        let at = |key: &str| entry.places.at(&["outputs", name, key]);
+        let place = at("error");
+        let (law, is_logarithmic) = match output.error.as_deref() {
+            None | Some("normal") => (Law::Normal, false),
+            Some("lognormal") => (Law::Normal, true),
+            Some("laplace") => (Law::Laplace, false),
+            Some("loglaplace") => (Law::Laplace, true),
+            Some("student") => (Law::Student(output.degrees_of_freedom.unwrap_or(FREEDOM)), false),
+            Some("poisson") => (Law::Poisson, false),
             Some(other) => {
                 let fault = fault!(BAD_OPTION, "the `error` of `{name}` is `{other}`");
-                return Err(fault.help("write \"normal\" or \"lognormal\"").at(place));
+                return Err(fault
+                    .help(
+                        "write \"normal\", \"lognormal\", \"laplace\", \"loglaplace\", \
+                         \"student\" or \"poisson\"",
+                    )
+                    .at(place));
+            }
+        };
+        if let Some(freedom) = output.degrees_of_freedom {
+            let place = at("degrees_of_freedom");
+            if !matches!(law, Law::Student(_)) {
+                let fault = fault!(BAD_OPTION, "the errors of `{name}` have no degrees of freedom");
+                return Err(fault.help("write `error = \"student\"`, or remove them").at(place));
+            }
+            if !(freedom.is_finite() && freedom >= 1.0) {
+                let fault = fault!(
+                    BAD_OPTION,
+                    "the degrees of freedom of the errors of `{name}` are {freedom}"
+                );
+                return Err(fault.help("write a number of at least 1, usually 3 to 8").at(place));
             }
         }
-    }
-    Ok(logarithmic)
+        if law == Law::Poisson {
+            let not_of_counts = if output.sigma.is_some() {
+                Some("sigma")
+            } else {
+                output.weight.map(|_| "weight")
+            };
+            if let Some(key) = not_of_counts {
+                let fault = fault!(
+                    BAD_OPTION,
+                    "`{name}` is a count, whose variance is its expectation: it has no `{key}`"
+                );
+                return Err(fault.help(format!("remove `{key}`")).at(at(key)));
+            }
+        }
+        Ok(ErrorLaw { law, is_logarithmic, place })
+    };
+    entry.all_outputs().map(|(name, output)| one((name, output))).collect()
 }
 
-fn distribution(name: &str, entry: &PriorEntry) -> Result<Distribution, Fault> {
-    match entry {
-        PriorEntry::Name(kind) if kind == "uniform" => Ok(Distribution::Uniform),
-        PriorEntry::Numbers(PriorNumbers {
-            mean: Some(mean),
-            sd: Some(sd),
-            median: None,
-            factor: None,
-        }) => Ok(Distribution::Normal { mean: *mean, sd: *sd }),
-        PriorEntry::Numbers(PriorNumbers {
-            mean: None,
-            sd: None,
-            median: Some(median),
-            factor: Some(factor),
-        }) => Ok(Distribution::LogNormal { median: *median, factor: *factor }),
-        _ => {
-            bail!(BAD_OPTION, "the prior of `{name}` cannot be read"; help: "write `{{ mean = 1, sd = 0.1 }}`, `{{ median = 1, factor = 1.5 }}` for a log-normal one, or \"uniform\"")
+/// Gives a series the distribution of its errors.
+///
+/// # Errors
+///
+/// Measured values that are no counts.
+pub(super) fn distribute(series: &mut Series, own: &ErrorLaw) -> Result<(), Diagnostic> {
+    series.law = own.law;
+    match own.law {
+        Law::Poisson => {
+            let is_count = |y: &f64| *y >= 0.0 && y.fract() == 0.0;
+            if let Some(k) = series.y.iter().position(|y| !is_count(y)) {
+                let fault = fault!(
+                    BAD_OPTION,
+                    "`{}` is a count, but {} was measured at {} = {}",
+                    series.y_name, series.y[k], series.x_name, series.x[k];
+                    help: "correct the value, or use another `error`"
+                );
+                return Err(fault.at(own.place));
+            }
+            series.sigma = Sigma::Given(vec![1.0; series.y.len()]);
         }
+        Law::Normal => {}
+        Law::Laplace | Law::Student(_) if series.sigma == Sigma::Unknown => {
+            series.sigma = Sigma::Estimated;
+        }
+        Law::Laplace | Law::Student(_) => {}
     }
+    Ok(())
+}
+
+/// The distribution of a prior, and what it adds to -log L.
+fn distribution(
+    name: &str,
+    entry: &PriorEntry,
+    range: [f64; 2],
+) -> Result<(Distribution, f64), Fault> {
+    let numbers = match entry {
+        PriorEntry::Name(kind) => {
+            &PriorNumbers { distribution: Some(kind.clone()), ..PriorNumbers::default() }
+        }
+        PriorEntry::Numbers(numbers) => numbers,
+    };
+    let base = numbers.base.unwrap_or(std::f64::consts::E);
+    if !(base.is_finite() && base > 1.0) {
+        bail!(BAD_OPTION, "the base of the prior of `{name}` is {base}"; help: "write 10 for the logarithm to base 10");
+    }
+    let PriorNumbers { mean, sd, median, factor, scale, min, max, .. } = *numbers;
+    let [low, high] = [min.unwrap_or(range[0]), max.unwrap_or(range[1])];
+    let width = match (min, max) {
+        (Some(_), _) | (_, Some(_)) if low.is_nan() || high.is_nan() || low >= high => {
+            bail!(BAD_OPTION, "the prior of `{name}` reaches from {low} to {high}"; help: "write the lower limit first");
+        }
+        _ => high - low,
+    };
+    let has_limits = min.is_some() || max.is_some();
+    let kind = numbers.distribution.as_deref().unwrap_or("normal");
+    let (found, constant) = match (kind, [mean, sd, median, factor, scale]) {
+        ("uniform", [None, None, None, None, None]) => {
+            (Distribution::Uniform, elementary::ln(width))
+        }
+        ("loguniform", [None, None, None, None, None]) if low > 0.0 => {
+            (Distribution::LogUniform, elementary::ln(elementary::ln(high / low)))
+        }
+        ("normal", [Some(mean), Some(sd), None, None, None]) if !has_limits => {
+            (Distribution::Normal { mean, sd }, 0.0)
+        }
+        ("normal", [None, None, Some(median), Some(factor), None]) if !has_limits => {
+            (Distribution::LogNormal { median, factor }, 0.0)
+        }
+        ("laplace", [None, None, Some(median), None, Some(scale)]) if !has_limits => {
+            (Distribution::Laplace { median, scale }, 0.0)
+        }
+        ("laplace", [None, None, Some(median), Some(factor), None]) if !has_limits => {
+            (Distribution::LogLaplace { median, factor }, 0.0)
+        }
+        _ => return Err(unreadable(name)),
+    };
+    let prior = Prior { parameter: 0, distribution: found, constant };
+    match numbers.base {
+        Some(_) if !prior.is_logarithmic() => {
+            bail!(BAD_OPTION, "the prior of `{name}` is not one of its logarithm, and has no base"; help: "remove `base`");
+        }
+        // The density of log10 p is ln 10 times that of ln p.
+        Some(base) => Ok((found, constant - elementary::ln(elementary::ln(base)))),
+        None => Ok((found, constant)),
+    }
+}
+
+fn unreadable(name: &str) -> Fault {
+    fault!(BAD_OPTION, "the prior of `{name}` cannot be read"; help: "write `{{ mean = 1, sd = 0.1 }}`, `{{ median = 1, factor = 1.5 }}` for a log-normal one, `{{ distribution = \"laplace\", median = 1, scale = 0.1 }}`, \"uniform\" or \"loguniform\"")
 }
 
 /// Replicates of a bootstrap unless the file says how many: the ends of 95 % intervals are then

@@ -41,6 +41,7 @@ pub(crate) mod operators;
 mod own_fitness;
 pub(crate) mod own_function;
 mod parameters;
+mod petab;
 mod places;
 mod record;
 mod refusal;
@@ -77,6 +78,7 @@ pub use draft_subject::DraftOptions;
 pub use driven::{Driven, driven, note_outside};
 pub use estimate::{Estimated, estimate};
 pub use imported::{FollowedInputs, inputs_of};
+pub use petab::petab;
 pub use shards::{Division, read_shards};
 
 use build::Built;

@@ -7,6 +7,7 @@ use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
 use super::{sigma, time_axis};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
+use crate::identify::fitness::Law;
 use crate::identify::problem::{Observation, Role, Series, Sigma};
 use crate::mat::{Column, MatFile};
 use crate::models::variable_unit::VariableUnit;
@@ -146,6 +147,7 @@ impl Comparison<'_> {
             weight,
             relative: Vec::new(),
             sigma,
+            law: Law::Normal,
             column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
             x_column: self.x_column.to_owned(),
             rows: rows.iter().map(|row| first_row + row).collect(),

@@ -6,6 +6,7 @@ use crate::world::{Files as _, MemoryWorld};
 
 mod entries;
 mod inference;
+mod laws;
 mod stopping;
 mod values;
 

@@ -13,7 +13,7 @@
 pub mod diagnostics;
 mod sampler;
 
-use super::{Distribution, Local};
+use super::Local;
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
@@ -275,9 +275,9 @@ impl<'a> Density<'a> {
     fn measure(&self, values: &[f64]) -> f64 {
         let one = |prior: &super::Prior| {
             let logarithm = elementary::ln(values[prior.parameter]);
-            match (prior.distribution, self.problem.parameters[prior.parameter].logarithmic) {
-                (Distribution::LogNormal { .. }, false) => -logarithm,
-                (Distribution::Normal { .. } | Distribution::Uniform, true) => logarithm,
+            match (prior.is_logarithmic(), self.problem.parameters[prior.parameter].logarithmic) {
+                (true, false) => -logarithm,
+                (false, true) => logarithm,
                 _ => 0.0,
             }
         };

@@ -1,0 +1,127 @@
+//! Errors and priors that are not normal, and what their likelihood is.
+
+use super::{Solution, solved};
+
+const MODEL: &str = "model M\n  parameter Real p = 1;\n  parameter Real s = 1;\n  Real a = p;\n  \
+                     Real deviation = s;\nend M;\n";
+const MEASURED: [f64; 9] = [1.0, 2.0, 3.0, 2.5, 2.2, 9.0, 2.1, 1.8, 2.4];
+
+/// A fit of the constant p; `parameters` after its range.
+fn fitted(parameters: &str, output: &str, measured: &[f64]) -> Solution {
+    let problem = format!(
+        "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+         p = {{ min = 0.1, max = 9{parameters}\n[[experiment]]\ndata = \"d.csv\"\n\
+         outputs = {{ a = {{ column = \"a\", {output} }} }}\n"
+    );
+    let rows = measured.iter().enumerate().map(|(k, y)| format!("{k},{y}\n"));
+    let data = format!("time,a\n{}", rows.collect::<String>());
+    solved(&[("p.toml", problem), ("M.mo", MODEL.into()), ("d.csv", data)])
+}
+
+#[track_caller]
+fn is(solution: &Solution, value: f64, deviation: Option<f64>, negative: f64) {
+    let own = &solution.parameters[0];
+    let text = solution.text();
+    assert!((own.value - value).abs() < 1e-4 * value, "{value}\n{text}");
+    let found = solution.likelihood.negative_log_likelihood.unwrap();
+    assert!((found - negative).abs() < 1e-6 * negative.abs(), "{found} {negative}\n{text}");
+    if let Some(deviation) = deviation {
+        let found = own.deviation.unwrap();
+        assert!((found - deviation).abs() < 1e-3 * deviation, "{found} {deviation}\n{text}");
+    }
+}
+
+/// The median, whose standard error is that of the Fisher information 1/b² of each point.
+#[test]
+fn laplace_errors_have_the_median() {
+    let sum: f64 = MEASURED.iter().map(|y| (y - 2.2).abs()).sum();
+    let found = fitted(" }", "sigma = 0.5, error = \"laplace\"", &MEASURED);
+    is(&found, 2.2, Some(0.5 / 3.0), sum / 0.5);
+    // n (ln 2b + 1), b being the mean absolute error; nine points have eight degrees of freedom.
+    let found = fitted(" }", "error = \"laplace\"", &MEASURED);
+    let scale = sum / 9.0;
+    is(&found, 2.2, Some(scale / 8.0_f64.sqrt()), 9.0 * ((2.0 * scale).ln() + 1.0));
+    let logarithms: Vec<f64> = MEASURED.iter().map(|y| y.ln()).collect();
+    let sum: f64 = logarithms.iter().map(|y| (y - 2.2_f64.ln()).abs()).sum();
+    let found = fitted(" }", "sigma = 0.5, error = \"loglaplace\"", &MEASURED);
+    is(&found, 2.2, None, sum / 0.5 + logarithms.iter().sum::<f64>());
+}
+
+/// `scipy.stats.t(4, p, 0.5)`, and with the scale that is most likely.
+#[test]
+fn student_errors_are_those_of_scipy() {
+    let found = fitted(" }", "sigma = 0.5, error = \"student\"", &MEASURED);
+    is(&found, 2.194_462_404_676_697, Some(0.197_202_659), 16.501_053_698_131_482);
+    let found = fitted(" }", "sigma = \"estimate\", error = \"student\"", &MEASURED);
+    is(&found, 2.200_720_203_585_628, None, 16.128_984_345_061_337);
+    let normal = fitted(" }", "sigma = 0.5", &MEASURED);
+    let many =
+        fitted(" }", "sigma = 0.5, error = \"student\", degrees_of_freedom = 1e9", &MEASURED);
+    let [a, b] = [&normal, &many].map(|own| own.likelihood.negative_log_likelihood.unwrap());
+    assert!((a - b).abs() < 1e-5, "{a} {b}");
+}
+
+/// A scale that is a parameter of the model has the same optimum as one that is estimated apart.
+#[test]
+fn the_model_may_compute_the_scale() {
+    let parameters = " }\ns = { min = 0.01, max = 9 }";
+    let found = fitted(parameters, "sigma = \"deviation\", error = \"student\"", &MEASURED);
+    is(&found, 2.200_720_203_585_628, None, 16.128_984_345_061_337);
+    // Fisher information: (ν + 1)/((ν + 3) s²) of p, 2ν/((ν + 3) s²) of s.
+    let s = 0.696_399_350_627_991_2;
+    let expected = [s * (7.0_f64 / 5.0 / 9.0).sqrt(), s * (7.0_f64 / 8.0 / 9.0).sqrt()];
+    for (own, expected) in found.parameters.iter().zip(expected) {
+        let deviation = own.deviation.unwrap();
+        assert!((deviation - expected).abs() < 1e-3 * expected, "{}", found.text());
+    }
+}
+
+/// The mean, with the variance of the mean of counts.
+#[test]
+fn counts_have_the_variance_of_their_expectation() {
+    let counts = [3.0, 5.0, 0.0, 4.0, 2.0, 4.0];
+    let found = fitted(" }", "error = \"poisson\"", &counts);
+    // -Σ ln(e^-3 3^y/y!)
+    let factorials: f64 = [6.0_f64, 120.0, 1.0, 24.0, 2.0, 24.0].iter().map(|f| f.ln()).sum();
+    is(&found, 3.0, Some((3.0_f64 / 6.0).sqrt()), 18.0 - 18.0 * 3.0_f64.ln() + factorials);
+}
+
+/// A Laplace prior moves the mean by 1/(n b) towards its centre, or holds the parameter there.
+#[test]
+fn laplace_priors_hold_parameters_at_their_centre() {
+    let mean = MEASURED.iter().sum::<f64>() / 9.0;
+    let half_log = 0.5 * std::f64::consts::TAU.ln();
+    let square = |p: f64| MEASURED.iter().map(|y| 0.5 * (y - p) * (y - p) + half_log).sum::<f64>();
+    let prior = ", prior = { distribution = \"laplace\", median = 1, scale = 0.2 } }";
+    let found = fitted(prior, "sigma = 1", &MEASURED);
+    let p = mean - 1.0 / (9.0 * 0.2);
+    is(&found, p, None, square(p) + (p - 1.0) / 0.2 + 0.4_f64.ln());
+    let prior = ", prior = { distribution = \"laplace\", median = 1, scale = 0.02 } }";
+    let found = fitted(prior, "sigma = 1", &MEASURED);
+    let own = found.parameters[0].value;
+    assert!((own - 1.0).abs() < 1e-3, "{}", found.text());
+}
+
+/// Densities of priors are those of the coordinate in which they are given.
+#[test]
+fn constants_of_priors_are_in_the_likelihood() {
+    let negative = |prior: &str| {
+        let prior = format!(", prior = {prior} }}");
+        let own = fitted(&prior, "sigma = 1", &MEASURED);
+        own.likelihood.negative_log_likelihood.unwrap()
+    };
+    let without = fitted(" }", "sigma = 1", &MEASURED).likelihood.negative_log_likelihood.unwrap();
+    for (prior, constant) in [
+        ("\"uniform\"", 8.9_f64.ln()),
+        ("\"loguniform\"", 90.0_f64.ln().ln()),
+        ("{ distribution = \"uniform\", min = 0, max = 20 }", 20.0_f64.ln()),
+        ("{ distribution = \"loguniform\", min = 0.1, max = 10, base = 10 }", 2.0_f64.ln()),
+    ] {
+        let found = negative(prior) - without;
+        assert!((found - constant).abs() < 1e-9, "{prior}: {found} {constant}");
+    }
+    let [natural, decimal] =
+        ["", ", base = 10"].map(|base| negative(&format!("{{ median = 2, factor = 3{base} }}")));
+    let of_base = 10.0_f64.ln().ln();
+    assert!((natural - decimal - of_base).abs() < 1e-9, "{natural} {decimal}");
+}
