@@ -71,6 +71,22 @@ pub(crate) struct Outputs {
     pub(crate) machine_code: MachineCode,
 }
 
+/// Functions one after another that need nearly the same.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct CrossingPart {
+    /// The number of the first of them among the relations with crossing functions.
+    pub(crate) first: usize,
+    /// Both sides of each.
+    pub(crate) code: Outputs,
+}
+
+impl CrossingPart {
+    /// The number after the last of them.
+    pub(crate) fn end(&self) -> usize {
+        self.first + self.code.outputs.len() / 2
+    }
+}
+
 /// A message with the condition that must not hold.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LogAssertion {

@@ -4,6 +4,7 @@
 //! the bits of results where sums are formed: it is part of the contract of equal bytes.
 
 use super::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
+use super::crossing_parts::crossing_parts;
 use super::event_code::{compile_events, linear_in_time, scheduled_in_time};
 use super::events::CompiledRounding;
 use super::hoist::Hoisting;
@@ -193,7 +194,7 @@ impl Compilation {
     fn relations(&mut self) -> (Switching, Vec<CompiledRounding>) {
         let Compilation { causalized, pool, registers, sequence, .. } = self;
         let mut relations = Vec::new();
-        let mut sides = Vec::new();
+        let mut relation_sides = Vec::new();
         let mut crossing_relations = Vec::new();
         let mut differences = Vec::new();
         let mut rests = Vec::new();
@@ -222,7 +223,7 @@ impl Compilation {
                 is_rescheduled: kept.is_some(),
             });
             let both = [relation.left, relation.right];
-            sides.push(compile_outputs(pool, registers, &[], &both));
+            relation_sides.push(compile_outputs(pool, registers, &[], &both));
         }
         let mut roundings = Vec::new();
         for rounding in &causalized.dae.events.roundings {
@@ -262,6 +263,8 @@ impl Compilation {
         let crossings_vary_in_time = depend_on_time(pool, &needed, &differences);
         let crossings =
             compile_continuous(pool, registers, sequence, &differences, Hoisting::Total);
+        let sides = &differences[..2 * crossing_relations.len()];
+        let crossing_parts = crossing_parts(pool, registers, sequence, sides);
         let rates = oscillations(pool, causalized, &differences);
         let oscillations = compile_outputs(pool, registers, &[], &rates);
         let time_rests = time_rests.tape;
@@ -270,12 +273,13 @@ impl Compilation {
             relations_of_loops: relations_of_loops(pool, causalized),
             memoryless: memoryless(pool, causalized, &relations),
             relations,
-            relation_sides: sides,
+            relation_sides,
             time_rests,
             rescheduled_rests,
             crossing_relations,
             crossings_vary_in_time,
             crossings,
+            crossing_parts,
             oscillations,
         };
         (switching, roundings)

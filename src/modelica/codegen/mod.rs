@@ -17,6 +17,7 @@
 mod branches;
 pub(crate) mod code;
 mod compilation;
+mod crossing_parts;
 pub mod errors;
 mod event_code;
 pub(crate) mod events;

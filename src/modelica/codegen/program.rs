@@ -1,5 +1,6 @@
 //! A compiled model: immutable, shared by any number of systems.
 
+use super::code::CrossingPart;
 use super::events::Events;
 use super::instruction::Register;
 use super::registers::Registers;
@@ -179,6 +180,8 @@ pub(crate) struct Switching {
     /// The same for rests that change at events; `None` where there are none.
     pub(crate) rescheduled_rests: Option<Tape>,
     pub(crate) crossings: Outputs,
+    /// The same for a few of them at a time.
+    pub(crate) crossing_parts: Vec<CrossingPart>,
     /// Whether these depend on time otherwise than through states and unknowns of loops.
     pub(crate) crossings_vary_in_time: bool,
     /// How fast they oscillate in time by themselves, in radians per second.

@@ -339,7 +339,17 @@ impl Program {
                 .switching
                 .crossings
                 .has(2 * (self.switching.crossing_relations.len() + roundings), limits)
+            && self.has_valid_parts(limits)
             && self.switching.oscillations.is_valid(limits)
+    }
+
+    fn has_valid_parts(&self, limits: &Limits<'_>) -> bool {
+        let parts = &self.switching.crossing_parts;
+        let firsts = parts.iter().skip(1).map(|part| part.first);
+        let ends = firsts.chain([self.switching.crossing_relations.len()]);
+        parts.first().is_none_or(|part| part.first == 0)
+            && parts.iter().zip(ends).all(|(part, end)| part.end() == end)
+            && parts.iter().all(|part| part.code.is_valid(limits))
     }
 
     fn has_valid_values(&self, limits: &Limits<'_>) -> bool {

@@ -255,7 +255,9 @@ impl System {
     /// Solves once and updates relations; what changed, if anything.
     fn pass(&mut self, t: f64, stage: Stage, change: Change) -> Result<Option<Moved>, Failure> {
         self.note_iterate();
-        if let Err(failure) = self.solve(stage) {
+        let is_known = stage == Stage::Event && self.take_noted_solution();
+        let solved = if is_known { Ok(()) } else { self.solve(stage) };
+        if let Err(failure) = solved {
             // The branch may be the wrong one: relations of what was solved before it tell.
             return match self.update_relations(t, change) {
                 true => Ok(Some(Moved::Relation)),

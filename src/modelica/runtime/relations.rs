@@ -142,19 +142,49 @@ impl System {
         let (first, second) = out.split_at_mut(n);
         let pairs = sides.chunks_exact(2).zip(&program.switching.crossing_relations);
         for (z, (pair, at)) in first.iter_mut().zip(pairs) {
-            let relation = &program.switching.relations[*at];
-            let holds = self.registers[relation.register as usize] != 0.0;
-            let (a, b) = (pair[0], pair[1]);
-            let tolerated = self.relations.tolerated[*at];
-            *z = match self.relations.held[*at] {
-                true if holds => distance(relation.operator, true, (a, b), tolerated),
-                true => -distance(relation.operator, false, (a, b), tolerated),
-                false => a - b,
-            };
+            *z = self.crossing(*at, (pair[0], pair[1]));
         }
         second.copy_from_slice(rest);
         self.relations.crossing_values = values;
         computed
+    }
+
+    /// Writes these of the crossing functions of relations, ascending, and perhaps others beside them;
+    /// y is loaded and solved. `None` where they have no code of their own.
+    pub(super) fn relation_crossings_among(
+        &mut self,
+        which: &[usize],
+        out: &mut [f64],
+    ) -> Option<Result<(), Failure>> {
+        let program = self.program.clone();
+        let parts = &program.switching.crossing_parts;
+        let mut left = which.iter().peekable();
+        let mut values = std::mem::take(&mut self.relations.crossing_values);
+        let mut computed = Ok(());
+        while let (Some(at), Ok(())) = (left.peek(), &computed) {
+            let part = parts.get(parts.partition_point(|part| part.end() <= **at))?;
+            values.resize(part.code.outputs.len(), 0.0);
+            computed = read(&part.code, &mut self.registers, &mut values);
+            for (number, pair) in (part.first..).zip(values.chunks_exact(2)) {
+                let at = program.switching.crossing_relations[number];
+                out[number] = self.crossing(at, (pair[0], pair[1]));
+            }
+            while left.next_if(|at| **at < part.end()).is_some() {}
+        }
+        self.relations.crossing_values = values;
+        Some(computed)
+    }
+
+    /// The crossing function of a relation with these sides.
+    fn crossing(&self, at: usize, (a, b): (f64, f64)) -> f64 {
+        let relation = &self.program.switching.relations[at];
+        let tolerated = self.relations.tolerated[at];
+        let holds = || self.registers[relation.register as usize] != 0.0;
+        match self.relations.held[at] {
+            true if holds() => distance(relation.operator, true, (a, b), tolerated),
+            true => -distance(relation.operator, false, (a, b), tolerated),
+            false => a - b,
+        }
     }
 
     /// Writes for every relation and rounding with crossing functions how far it is from another value:

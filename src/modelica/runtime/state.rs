@@ -106,8 +106,18 @@ pub(super) struct LoopState {
     pub(super) solves_loops: bool,
     /// Whether the registers hold the solution of all loops at the time and the states that they hold.
     pub(super) is_solved: bool,
+    /// The solution where an event was located, which is where it is handled.
+    pub(super) at_event: SolutionAtEvent,
     /// That of the Jacobian of the states alone, where loops are solved inside: full.
     pub(super) full_pattern: OnceLock<Pattern>,
+}
+
+/// Values of variables, with the time and the unknowns of the integrator that they were solved for.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SolutionAtEvent {
+    pub(super) time: f64,
+    pub(super) y: Vec<f64>,
+    pub(super) variables: Vec<f64>,
 }
 
 /// What delays and pipes remember.

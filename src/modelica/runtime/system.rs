@@ -5,7 +5,9 @@ use super::instants::{Change, Stage, either, same_time};
 use super::newton::{Attempts, LoopSolver};
 use super::partial_observation::OtherVariables;
 use super::sensitivity_state::Sensitivity;
-use super::state::{DelayState, EventState, LoopState, MessageState, OutputState, RelationState};
+use super::state::{
+    DelayState, EventState, LoopState, MessageState, OutputState, RelationState, SolutionAtEvent,
+};
 use super::state_selection::Choice;
 use crate::codegen::code::{LogAssertion, Step};
 use crate::codegen::memory::Memory;
@@ -198,9 +200,43 @@ impl System {
         self.load(t, y);
         self.solve(Stage::Continuous)?;
         self.agree_with_transported(t)?;
+        self.note_solution(t, y);
         // What delays and pipes read at a point changes with what they record, derivatives with y.
         self.loops.is_solved = !self.has_past() && self.sensitivity.is_none();
         Ok(())
+    }
+
+    /// Keeps a solution for iteration variables that y holds: it is asked for where an event is located.
+    /// Not where more than the unknowns and the relations decides it.
+    fn note_solution(&mut self, t: f64, y: &[f64]) {
+        let Program { events, sorted, continuous, registers, .. } = &*self.program;
+        let is_determined = events.is_empty()
+            && events.roundings.is_empty()
+            && sorted.dae.events.recordings.is_empty()
+            && self.sensitivity.is_none();
+        if is_determined && y.len() == continuous.unknowns.len() {
+            let noted = &mut self.loops.at_event;
+            noted.time = t;
+            noted.y.clear();
+            noted.y.extend_from_slice(y);
+            noted.variables.clear();
+            noted.variables.extend_from_slice(&self.registers[..registers.n_variables()]);
+        }
+    }
+
+    /// Takes the solution that was noted for the unknowns and relations at hand; whether there is one.
+    pub(super) fn take_noted_solution(&mut self) -> bool {
+        let noted = std::mem::take(&mut self.loops.at_event);
+        let mut relations =
+            self.program.switching.relations.iter().map(|own| own.register as usize);
+        let is_of_this_point = !noted.variables.is_empty()
+            && self.is_loaded(noted.time, &noted.y)
+            && relations.all(|own| self.registers[own] == noted.variables[own]);
+        if is_of_this_point {
+            self.registers[..noted.variables.len()].copy_from_slice(&noted.variables);
+        }
+        self.loops.at_event = SolutionAtEvent { time: f64::NAN, ..noted };
+        is_of_this_point
     }
 
     /// Whether the registers hold these bits.
@@ -622,6 +658,23 @@ impl Events for System {
             *out = choice.quality(selection, &mut self.registers)?;
         }
         Ok(())
+    }
+
+    fn crossings_among(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        which: &[usize],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        if self.program.switching.crossing_parts.is_empty() {
+            return self.crossings(t, y, out);
+        }
+        self.load_solved(t, y)?;
+        match self.relation_crossings_among(which, out) {
+            Some(computed) => computed,
+            None => self.crossings(t, y, out),
+        }
     }
 
     fn next_time_event(&self, t: f64) -> Option<f64> {

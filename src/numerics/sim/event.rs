@@ -68,6 +68,8 @@ pub(crate) struct CrossingSearch {
     farther: Vec<f64>,
     /// y at the end of the step, while a vertex is looked at.
     kept: Vec<f64>,
+    /// The functions that change within the bracket.
+    changing: Vec<usize>,
     /// The functions that changed their signs at the last event.
     pub(super) switched: Vec<usize>,
 }
@@ -93,11 +95,13 @@ fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64
     (t > a && t < b && z.is_finite()).then_some((t, z))
 }
 
-/// The crossing functions at (t, y), with loops solved for them if that is asked for and possible.
+/// The crossing functions at (t, y), or at least some of them, with loops solved for them if that is
+/// asked for and possible.
 fn functions(
     problem: &mut Problem,
     solves_loops: bool,
     (t, y): (f64, &[f64]),
+    which: Option<&[usize]>,
     out: &mut [f64],
 ) -> Result<(), Failure> {
     if solves_loops && problem.system.n_algebraic() > problem.system.n_auxiliary() {
@@ -108,7 +112,10 @@ fn functions(
             return solved;
         }
     }
-    problem.system.crossings(t, y, out)
+    match which {
+        Some(which) => problem.system.crossings_among(t, y, which, out),
+        None => problem.system.crossings(t, y, out),
+    }
 }
 
 pub fn sign(z: f64) -> i8 {
@@ -196,7 +203,7 @@ impl CrossingSearch {
             return Ok(None);
         }
         let end = b;
-        functions(problem, self.solves_loops, (b, y), &mut self.right)?;
+        functions(problem, self.solves_loops, (b, y), None, &mut self.right)?;
         self.is_near.fill(true);
         self.note_lasting();
         // Also before a change of sign at b: another function may have turned twice until there.
@@ -229,7 +236,8 @@ impl CrossingSearch {
         Ok(Some(b))
     }
 
-    /// Narrows a bracket of the first change of sign; its later end, after the change.
+    /// Narrows a bracket of the first change of sign; its later end, after the change. Of the functions
+    /// those are evaluated that have changed at its end, and all of them at the end found.
     fn narrow(
         &mut self,
         problem: &mut Problem,
@@ -241,14 +249,18 @@ impl CrossingSearch {
         let resolution = 4.0 * f64::EPSILON * a.abs().max(b.abs());
         let width = width.max(resolution);
         let mut outside = None;
+        let mut changing = std::mem::take(&mut self.changing);
+        changing.clear();
+        changing.extend((0..self.signs.len()).filter(|at| self.has_changed(*at, self.right[*at])));
+        let end = b;
         // The last two lengths of the bracket, and the last trial.
         let (mut lengths, mut last) = ([f64::INFINITY; 2], a);
-        let mut estimate = self.earliest_zero(a, b, outside);
+        let mut estimate = self.earliest_zero(&changing, (a, b), outside);
         for _ in 0..MAX_TRIALS {
             if b - a <= width {
                 break;
             }
-            let zero = self.earliest_zero(a, b, outside);
+            let zero = self.earliest_zero(&changing, (a, b), outside);
             let moved = (zero - std::mem::replace(&mut estimate, zero)).abs();
             let beyond = (BEYOND * moved).max(0.4 * width);
             let t = if last <= a { zero + beyond } else { zero - beyond };
@@ -256,8 +268,8 @@ impl CrossingSearch {
             let t = if t > a && t < b && !is_slow { t } else { 0.5 * (a + b) };
             lengths = [b - a, if is_slow { f64::INFINITY } else { lengths[0] }];
             integrator.interpolate(t, y);
-            functions(problem, self.solves_loops, (t, y), &mut self.trial)?;
-            let end = if self.changed(&self.trial) {
+            functions(problem, self.solves_loops, (t, y), Some(&changing), &mut self.trial)?;
+            let end = if changing.iter().any(|at| self.has_changed(*at, self.trial[*at])) {
                 outside = Some(std::mem::replace(&mut b, t));
                 &mut self.right
             } else {
@@ -267,6 +279,11 @@ impl CrossingSearch {
             std::mem::swap(end, &mut self.trial);
             std::mem::swap(&mut self.outside, &mut self.trial);
             last = t;
+        }
+        self.changing = changing;
+        if b < end {
+            integrator.interpolate(b, y);
+            functions(problem, self.solves_loops, (b, y), None, &mut self.right)?;
         }
         Ok(b)
     }
@@ -348,7 +365,7 @@ impl CrossingSearch {
             return Ok(None);
         };
         integrator.interpolate(vertex, y);
-        functions(problem, self.solves_loops, (vertex, y), &mut self.trial)?;
+        functions(problem, self.solves_loops, (vertex, y), None, &mut self.trial)?;
         if self.changed(&self.trial) {
             std::mem::swap(&mut self.right, &mut self.trial);
             return Ok(Some(vertex));
@@ -376,7 +393,7 @@ impl CrossingSearch {
         let mut distance = 0.5 * (b - a);
         for point in 0..MOST_POINTS {
             integrator.interpolate(a + distance, y);
-            functions(problem, self.solves_loops, (a + distance, y), &mut self.trial)?;
+            functions(problem, self.solves_loops, (a + distance, y), None, &mut self.trial)?;
             if self.changed(&self.trial) {
                 std::mem::swap(&mut self.right, &mut self.trial);
                 return Ok(Some(a + distance));
@@ -460,10 +477,11 @@ impl CrossingSearch {
         z.iter().enumerate().any(|(at, z)| self.has_changed(at, *z))
     }
 
-    /// The earliest zero of the functions that change between a and b, each by the inverse parabola
-    /// through its values there and `outside`, or by its secant.
-    fn earliest_zero(&self, a: f64, b: f64, outside: Option<f64>) -> f64 {
-        let changing = (0..self.signs.len()).filter(|at| self.has_changed(*at, self.right[*at]));
+    /// The earliest zero of those of these functions that change between a and b, each by the inverse
+    /// parabola through its values there and `outside`, or by its secant.
+    fn earliest_zero(&self, among: &[usize], (a, b): (f64, f64), outside: Option<f64>) -> f64 {
+        let among = among.iter().copied();
+        let changing = among.filter(|at| self.has_changed(*at, self.right[*at]));
         let zero = |at: usize| {
             let (left, right) = (self.left[at], self.right[at]);
             // Where the function passes its margin, if it was within.

@@ -97,6 +97,16 @@ pub trait Events {
     fn crossings(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }
+    /// Writes at least these of the zero-crossing functions, ascending, where they are among all.
+    fn crossings_among(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _which: &[usize],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.crossings(t, y, out)
+    }
     /// Whether crossing functions vary with time alone, so that the steps, which are as long as y
     /// allows, say nothing about how often they change their signs.
     fn crossings_vary_in_time(&self) -> bool {

@@ -30,6 +30,7 @@ use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
 use crate::sim::{Pattern, Residual, SimErrorKind};
+use std::sync::LazyLock;
 
 pub(in crate::sim) const ENTRY: Entry<dyn Integrator> = Entry {
     name: "dassl",
@@ -467,13 +468,17 @@ impl Bdf {
     }
 }
 
-/// The matrix that takes differences at distance h to differences at distance `factor` · h.
+/// The matrix that takes differences at distance h to differences at distance `factor` · h: its rows
+/// from the diagonal on, which are all that is not zero.
 fn rescaling(order: usize, factor: f64) -> [[f64; MAX_ORDER + 1]; MAX_ORDER + 1] {
-    let (new, old) = (binomials(order, factor), binomials(order, 1.0));
+    // With the factor 1 entry (k, j) is zero where k > j.
+    static OF_EQUAL_STEPS: LazyLock<[[f64; MAX_ORDER + 1]; MAX_ORDER + 1]> =
+        LazyLock::new(|| binomials(MAX_ORDER, 1.0));
+    let (new, old) = (binomials(order, factor), &*OF_EQUAL_STEPS);
     let mut product = [[0.0; MAX_ORDER + 1]; MAX_ORDER + 1];
     for i in 0..=order {
-        for j in 0..=order {
-            product[i][j] = (0..=order).map(|k| new[i][k] * old[k][j]).sum();
+        for j in 0..=i {
+            product[i][j] = (0..=j).map(|k| new[i][k] * old[k][j]).sum();
         }
     }
     product

@@ -134,6 +134,19 @@ impl Events for Sliding<'_> {
         evaluated
     }
 
+    fn crossings_among(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        which: &[usize],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        match self.slide {
+            Some(_) => self.crossings(t, y, out),
+            None => self.inner.crossings_among(t, y, which, out),
+        }
+    }
+
     fn crossings_vary_in_time(&self) -> bool {
         self.inner.crossings_vary_in_time()
     }
