@@ -400,6 +400,14 @@
 //! - **jazwinski-1970** — A. H. Jazwinski: Stochastic Processes and Filtering Theory. Academic Press,
 //!   1970.
 //!
+//! <a id="rauch-tung-striebel-1965"></a>
+//! - **rauch-tung-striebel-1965** — H. E. Rauch, F. Tung, C. T. Striebel: Maximum likelihood estimates of
+//!   linear dynamic systems. AIAA Journal 3(8), 1965, 1445–1450.
+//!
+//! <a id="bierman-1973"></a>
+//! - **bierman-1973** — G. J. Bierman: Fixed interval smoothing with discrete measurements. International
+//!   Journal of Control 18(1), 1973, 65–75.
+//!
 //! <a id="van-loan-1978"></a>
 //! - **van-loan-1978** — C. F. Van Loan: Computing integrals involving the matrix exponential. IEEE
 //!   Transactions on Automatic Control 23(3), 1978, 395–404.

@@ -9,7 +9,7 @@ use crate::registry::BAD_OPTION;
 use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::script::runs::problem::{Estimated, estimate};
+use crate::script::runs::problem::{EstimateOptions, Estimated, Shown, estimate};
 use crate::source::Span;
 use clap::{Args, ValueHint};
 use gapilib_identify::significant;
@@ -25,10 +25,13 @@ const QUANTILE: f64 = 1.959_963_984_540_054;
 Examples:
   gapi estimate house.toml --values results/house/result.json --output states.csv
   gapi estimate house.toml --figure states.svg
+  gapi estimate house.toml --steps 4 --every 900 --until 432000 --output forecast.csv
 
 The problem has process noise, `[noise]`. Its states are estimated by an extended Kalman filter, each
-from the measurements up to its time. Parameters that the problem leaves free have the values of
---values, or those where they start (`start`).
+from the measurements up to its time, and smoothed: from all measurements. Parameters that the problem
+leaves free have the values of --values, or those where they start (`start`).
+
+There is a row for each row of the data, also where outputs were not measured.
 
 Exit code: 0 if the states were estimated, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct EstimateArgs {
@@ -41,6 +44,15 @@ pub(super) struct EstimateArgs {
     /// The experiment, where the problem has several
     #[arg(long, value_name = "NAME")]
     pub experiment: Option<String>,
+    /// Predict outputs over N samples as well, each from the state at the sample N before
+    #[arg(long, value_name = "N")]
+    pub steps: Option<usize>,
+    /// Add rows at equal distances, in seconds
+    #[arg(long, value_name = "SECONDS")]
+    pub every: Option<f64>,
+    /// The last of them, also after the data, in seconds
+    #[arg(long, value_name = "SECONDS")]
+    pub until: Option<f64>,
     /// Write states, predictions and their standard deviations (.csv, .mat)
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
@@ -70,8 +82,10 @@ pub(super) fn states(arguments: &EstimateArgs, global: &Global) -> ExitCode {
 
 fn run(session: &mut Session, arguments: &EstimateArgs) -> Result<(), Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    let given = (arguments.values.as_deref(), arguments.experiment.as_deref());
-    let found = estimate(session, &arguments.problem, given)?;
+    let EstimateArgs { steps, every, until, .. } = *arguments;
+    let (values, experiment) = (arguments.values.as_deref(), arguments.experiment.as_deref());
+    let options = EstimateOptions { values, experiment, steps, every, until };
+    let found = estimate(session, &arguments.problem, &options)?;
     let own = |file: &PathBuf| session.world.absolute(file);
     let read: Vec<PathBuf> = found.read.iter().map(own).collect();
     let written = [&arguments.output, &arguments.figure].into_iter().flatten();
@@ -89,23 +103,26 @@ fn run(session: &mut Session, arguments: &EstimateArgs) -> Result<(), Vec<Diagno
     Ok(())
 }
 
-/// The states at the last sample, and how likely the measurements are.
+/// The states at the last row, and how likely the measurements are.
 fn last_values(found: &Estimated) -> String {
     let last = |name: &str| {
         let values = found.table.column(name).unwrap_or_default();
-        values.into_iter().rev().find(|value| value.is_finite()).unwrap_or(f64::NAN)
+        values.last().copied().unwrap_or(f64::NAN)
     };
+    let (count, last_sample) = found.samples;
     let mut text = format!(
-        "{}: {} samples, -log L = {}\n",
+        "{}: {count} samples, -log L = {}\n",
         found.experiment,
-        found.table.time.len(),
         significant(found.negative_log_likelihood, 7)
     );
     if let Some(time) = found.table.time.last() {
         text += &format!("states at {time} s, with their standard deviations:\n");
+        if *time > last_sample {
+            text += &format!("  (the last measurement is that at {last_sample} s)\n");
+        }
     }
-    for own in found.shown.iter().filter(|own| own[2].is_none()) {
-        let [Some(name), Some(sd), _] = own else { continue };
+    for own in found.shown.iter().filter(|own| own.measured.is_none()) {
+        let [name, sd] = &own.value;
         let unit = unit_of(&found.table, name);
         let (value, sd) = (significant(last(name), 6), significant(last(sd), 3));
         text += format!("  {name} = {value} ± {sd} {unit}").trim_end();
@@ -138,40 +155,58 @@ fn draw(session: &mut Session, path: &Path, found: &Estimated) -> Result<(), Fau
     Ok(())
 }
 
-fn panel(table: &ResultTable, names: &[Option<String>; 3]) -> Result<Panel, Fault> {
-    let [value, sd, measured] = names.each_ref().map(|name| name.as_deref().unwrap_or_default());
-    let (y, sd) = (table.column(value)?, table.column(sd)?);
-    let known: Vec<usize> = (0..y.len()).filter(|at| y[*at].is_finite()).collect();
-    let of = |values: &[f64]| -> Vec<f64> { known.iter().map(|at| values[*at]).collect() };
-    let edge = |side: f64| known.iter().map(move |at| (*at, side));
-    let edges: Vec<(usize, f64)> = edge(QUANTILE).chain(edge(-QUANTILE).rev()).collect();
-    let series = |name: &str, x: Vec<f64>, y: Vec<f64>, mark, colour| plot::Series {
-        name: name.to_owned(),
-        x,
-        y,
-        mark,
-        colour,
-    };
-    let time = of(&table.time);
-    let mut all = vec![
-        series(
-            "95 % band",
-            edges.iter().map(|(at, _)| table.time[*at]).collect(),
-            edges.iter().map(|(at, side)| side.mul_add(sd[*at], y[*at])).collect(),
-            Mark::Area,
-            1,
-        ),
-        series(value, time.clone(), of(&y), Mark::Line, 1),
-    ];
-    if names[2].is_some() {
-        all.push(series("measured", time, of(&table.column(measured)?), Mark::Dots, 0));
+fn panel(table: &ResultTable, own: &Shown) -> Result<Panel, Fault> {
+    let mut all = band(table, &own.value, ("95 % band", "filtered", 1))?;
+    if let Some(smoothed) = &own.smoothed {
+        all.extend(band(table, smoothed, ("95 % band, smoothed", "smoothed", 3))?);
     }
-    let axis = Axis::linear(value, unit_of(table, value));
+    if own.measured.is_some() {
+        "predicted".clone_into(&mut all[1].name);
+    }
+    for (number, name) in own.predicted.iter().enumerate() {
+        let (x, y) = known(table, name)?;
+        let title = name.split('(').next().unwrap_or_default();
+        all.push(series(title, x, y, Mark::Dashed, 2 + 2 * number));
+    }
+    if let Some(measured) = &own.measured {
+        let (x, y) = known(table, measured)?;
+        all.push(series("measured", x, y, Mark::Dots, 0));
+    }
+    let [name, _] = &own.value;
+    let title = name.strip_prefix("predicted(").and_then(|name| name.strip_suffix(')'));
     Ok(Panel {
         x: Axis::linear("time", "s"),
-        y: axis,
+        y: Axis::linear(title.unwrap_or(name), unit_of(table, name)),
         height: 150.0,
         zero_line: false,
         series: all,
     })
+}
+
+/// A line with its 95 % band.
+fn band(
+    table: &ResultTable,
+    [value, sd]: &[String; 2],
+    (title, line, colour): (&str, &str, usize),
+) -> Result<Vec<plot::Series>, Fault> {
+    let ((x, y), (_, sd)) = (known(table, value)?, known(table, sd)?);
+    let edge = |side: f64| (0..x.len()).map(move |at| (at, side));
+    let edges = || edge(QUANTILE).chain(edge(-QUANTILE).rev());
+    let around = edges().map(|(at, side)| side.mul_add(sd[at], y[at])).collect();
+    let places = edges().map(|(at, _)| x[at]).collect();
+    Ok(vec![
+        series(title, places, around, Mark::Area, colour),
+        series(line, x.clone(), y, Mark::Line, colour),
+    ])
+}
+
+/// The values of a column and their times, where it has some.
+fn known(table: &ResultTable, name: &str) -> Result<(Vec<f64>, Vec<f64>), Fault> {
+    let values = table.column(name)?;
+    let pairs = table.time.iter().copied().zip(values);
+    Ok(pairs.filter(|(_, value)| value.is_finite()).unzip())
+}
+
+fn series(name: &str, x: Vec<f64>, y: Vec<f64>, mark: Mark, colour: usize) -> plot::Series {
+    plot::Series { name: name.to_owned(), x, y, mark, colour }
 }

@@ -59,6 +59,8 @@ struct Own<'a> {
     has_sigma: bool,
     /// Whether the fitness counts large residuals less.
     robust: bool,
+    /// Whether it is a likelihood with deviations that are estimated or computed.
+    is_likelihood: bool,
     /// Whether these are deviations that the model computes.
     is_deviation: bool,
 }
@@ -130,6 +132,10 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
             first: start,
             has_sigma: series.sigma.is_known(),
             robust: statistics.robust || series.law != Law::Normal,
+            is_likelihood: matches!(
+                ErrorModel::of(problem),
+                ErrorModel::Computed | ErrorModel::Estimated
+            ),
             is_deviation: matches!(series.role, super::Role::Deviation(_)),
         }
     };
@@ -439,10 +445,12 @@ fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
                 own.label,
                 if one { "is" } else { "are" },
                 if one { "this outlier" } else { "these outliers" },
-                match (own.robust, one) {
-                    (true, _) => "; the robust fitness gives it little weight",
-                    (false, true) => ", or minimize `huber`, which gives it less weight",
-                    (false, false) => ", or minimize `huber`, which gives them less weight",
+                match (own.robust, own.is_likelihood, one) {
+                    (true, ..) => "; the robust fitness gives it little weight",
+                    // It has no robust form here.
+                    (false, true, _) => "",
+                    (false, false, true) => ", or minimize `huber`, which gives it less weight",
+                    (false, false, false) => ", or minimize `huber`, which gives them less weight",
                 },
             ),
         )

@@ -15,6 +15,8 @@ use crate::elementary;
 use crate::table::significant;
 use std::f64::consts::TAU;
 
+/// The names of densities of process noise begin so.
+pub const NOISE_OF: &str = "noise of ";
 /// Quantile 0.95 of the Kolmogorov distribution.
 const KOLMOGOROV: f64 = 1.358_1;
 /// Fewer values have no periodogram that says anything.
@@ -81,6 +83,14 @@ impl SolvedSeries {
         all.iter().map(|own| own[1]).collect()
     }
 
+    /// The root mean squared residual of a simulation from the start, where predictions see the data.
+    fn error_of_simulation(&self) -> Option<f64> {
+        let pairs = self.points.iter().zip(&self.simulation);
+        let squares: f64 = pairs.map(|(p, s)| elementary::powi(p[1] - s[1], 2)).sum();
+        let n = self.simulation.len();
+        (n > 0).then(|| (squares / n as f64).sqrt())
+    }
+
     /// Whether what a prediction misses is white noise, in words.
     fn whiteness(&self) -> Option<Finding> {
         let periodogram = Periodogram::of(&self.innovations())?;
@@ -117,8 +127,8 @@ pub struct NoiseComparison<'a> {
     pub names: &'a [String],
     /// The least -log L with all of them 0.
     pub without: Option<f64>,
-    /// For each series the root mean squared residual of a simulation that does not see the data.
-    pub simulated: Option<Vec<f64>>,
+    /// For each series a simulation that does not see the data, at its points.
+    pub simulated: Option<Vec<Vec<f64>>>,
 }
 
 impl Solution {
@@ -147,15 +157,21 @@ impl Solution {
         }
         let white: Vec<Finding> = self.series.iter().filter_map(SolvedSeries::whiteness).collect();
         self.findings.extend(white);
-        let of_series = self.series.iter().zip(compared.simulated.iter().flatten());
-        let words: Vec<String> = of_series
+        for (own, simulated) in self.series.iter_mut().zip(compared.simulated.iter().flatten()) {
+            let points = own.points.iter().zip(simulated);
+            own.simulation = points.map(|(point, simulated)| [point[0], *simulated]).collect();
+        }
+        let words: Vec<String> = self
+            .series
+            .iter()
+            .filter_map(|own| Some((own, own.error_of_simulation()?)))
             .map(|(own, simulated)| {
                 let unit =
                     if own.y[1].is_empty() { String::new() } else { format!(" {}", own.y[1]) };
                 format!(
                     "{}: {}{unit} (predictions: {}{unit})",
                     label(own),
-                    significant(*simulated, 3),
+                    significant(simulated, 3),
                     significant(own.rmse, 3)
                 )
             })

@@ -52,6 +52,7 @@ mod sensitivities;
 mod separable;
 mod solution;
 mod space;
+mod states;
 mod statistics;
 mod summary;
 mod text;
@@ -78,8 +79,8 @@ pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
 pub use importance::{Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred};
-pub use innovations::NoiseComparison;
 pub(crate) use innovations::Periodogram;
+pub use innovations::{NOISE_OF, NoiseComparison};
 pub use journal::{
     Entry, Journal, Record, begin, decode, encode, header, is_of_another_version, without_times,
 };
@@ -101,6 +102,7 @@ pub use solution::{
     SolvedParameter, SolvedSearch, SolvedSeries, Subject, Verdict,
 };
 pub use space::Free;
+pub use states::SolvedState;
 pub use statistics::Statistics;
 pub(crate) use statistics::{ResidualTest, distributions, residual_test};
 pub use text::modelica_number;

@@ -194,9 +194,11 @@ fn estimated(solution: &Solution) -> Option<Finding> {
     if solution.likelihood.error_model != ErrorModel::Estimated {
         return None;
     }
+    let is_joint = solution.series.windows(2).any(|pair| pair[0].experiment != pair[1].experiment);
     let own = |series: &SolvedSeries| {
         let sigma = series.sigma.filter(|_| series.sigma_estimated)?;
-        Some(format!("{} {} {}", series.y[0], significant(sigma, 4), series.y[1]))
+        let of = if is_joint { format!("{} / ", series.experiment) } else { String::new() };
+        Some(format!("{of}{} {} {}", series.y[0], significant(sigma, 4), series.y[1]))
     };
     let mut sigmas: Vec<String> = solution.series.iter().filter_map(own).collect();
     sigmas.dedup();

@@ -5,7 +5,7 @@
 //! limit, which tells of the range and not of the parameter: nothing is said but that the range may be
 //! too narrow, and that is said first.
 
-use super::{Finding, FindingKind, Severity, Solution, SolvedParameter, Verdict};
+use super::{Finding, FindingKind, NOISE_OF, Severity, Solution, SolvedParameter, Verdict};
 use crate::table::significant;
 
 /// A wider range of a parameter whose logarithm is searched, or that is positive, reaches this factor
@@ -99,6 +99,11 @@ pub(super) fn leave_out_remedy(finding: &mut Finding) {
 
 /// What to do about a range that ends before the best value.
 pub(super) fn remedy(parameter: &SolvedParameter) -> String {
+    if parameter.name.starts_with(NOISE_OF) && parameter.at_bound && !is_upper(parameter) {
+        // Less noise is no noise.
+        return "Without this noise the data are explained as well: remove it from `[noise]`."
+            .to_owned();
+    }
     let [below, above] = wider(parameter);
     let to = |(word, end): (&str, Option<f64>)| Some(format!("{word} to {}", significant(end?, 2)));
     let sides = match (parameter.at_bound, is_upper(parameter)) {

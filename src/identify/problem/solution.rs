@@ -347,6 +347,9 @@ pub struct SolvedSeries {
     /// X and what the best individual of a script gives, where the result is another one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub script: Vec<[f64; 2]>,
+    /// X and a simulation from the start that sees no measurements, where the points are predictions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub simulation: Vec<[f64; 2]>,
 }
 
 impl SolvedSeries {
@@ -379,6 +382,7 @@ impl SolvedSeries {
             curve: Vec::new(),
             points,
             script: Vec::new(),
+            simulation: Vec::new(),
         }
     }
 }

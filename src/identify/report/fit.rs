@@ -6,9 +6,12 @@ use super::parts::{explained, figure, one_panel, series};
 use super::view::{self, CurvePoint, View};
 use crate::Descriptions;
 use crate::plot::{Axis, Figure, MANY, Mark, Panel, Series, of_points, of_residuals};
-use crate::problem::{Band, SolvedSeries};
+use crate::problem::{Band, SolvedSeries, SolvedState};
 use maud::{Markup, html};
 use std::path::Path;
+
+/// Quantile 0.975 of the normal distribution.
+const NORMAL: f64 = 1.959_963_984_540_054;
 
 /// A series, its curve, and what it is besides a fitted one.
 type Shown<'v> = (&'v SolvedSeries, &'v [CurvePoint], &'static str);
@@ -40,7 +43,9 @@ pub(super) fn others(view: &View) -> Option<Section> {
     let solution = view.solution;
     let mut planes = crate::problem::planes(&solution.series);
     planes.extend(crate::problem::planes(&solution.validation));
-    if others.is_empty() && view.unmeasured.is_empty() && planes.is_empty() {
+    let states = &solution.inferred.states;
+    let measured = others.is_empty() && planes.is_empty();
+    if measured && view.unmeasured.is_empty() && states.is_empty() {
         return None;
     }
     let descriptions = &view.solution.subject.descriptions;
@@ -49,6 +54,7 @@ pub(super) fn others(view: &View) -> Option<Section> {
             @for (name, drawing) in &planes { (in_plane(name, drawing)) }
             @for (series, curve, kind) in others { (one(series, (curve, kind), descriptions)) }
             @for band in &view.unmeasured { (unmeasured(band, descriptions)) }
+            @for own in states { (state(own, descriptions)) }
         }
     };
     Some(Section { id: "series", heading: "Further series", content, wide: true })
@@ -85,7 +91,8 @@ fn one(
         strong { (name) } ": " (series.points.len())
         @if series.points.len() == 1 { " point" } @else { " points" }
         @if let Some(name) = Path::new(&series.file).file_name() { " from " (name.to_string_lossy()) }
-        ". Residual: measured minus simulated."
+        ". Residual: measured minus "
+        @if series.simulation.is_empty() { "simulated." } @else { "predicted." }
     };
     figure(&drawing(series, curve, descriptions), &label, &caption)
 }
@@ -96,7 +103,9 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint], descriptions: &Descripti
     let column = |value: fn(&[f64; 3]) -> f64| -> Vec<(f64, f64)> {
         points.iter().map(|point| (point[0], value(point))).collect()
     };
-    let line = match curve.is_empty() {
+    // Between samples a prediction is not a line.
+    let is_predicted = !solved.simulation.is_empty();
+    let line = match curve.is_empty() || is_predicted {
         true => column(|point| point[2]),
         false => curve.iter().map(|at| (at.x, at.y)).collect(),
     };
@@ -105,12 +114,15 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint], descriptions: &Descripti
     let mut fit = bands(curve);
     let is_long = points.len() > MANY;
     let measured = series("measured", &column(|point| point[1]), of_points(points.len()), 0);
-    let simulated = series("simulated", &line, Mark::Line, 1);
+    let name = if is_predicted { "predicted from all earlier samples" } else { "simulated" };
+    let simulated = series(name, &line, Mark::Line, 1);
     fit.extend(if is_long { [measured, simulated] } else { [simulated, measured] });
-    if !solved.script.is_empty() {
-        let mut own: Vec<(f64, f64)> = solved.script.iter().map(|[x, y]| (*x, *y)).collect();
+    let others =
+        [("script's best", &solved.script), ("simulated from the start", &solved.simulation)];
+    for (name, points) in others.into_iter().filter(|(_, points)| !points.is_empty()) {
+        let mut own: Vec<(f64, f64)> = points.iter().map(|[x, y]| (*x, *y)).collect();
         own.sort_by(|a, b| a.0.total_cmp(&b.0));
-        fit.push(series("script's best", &own, Mark::Dashed, 2));
+        fit.push(series(name, &own, Mark::Dashed, 2));
     }
     let residuals = column(|point| point[1] - point[2]);
     let residuals = vec![series("", &residuals, of_residuals(is_long), 0)];
@@ -142,6 +154,32 @@ fn bands(curve: &[CurvePoint]) -> Vec<Series> {
         }
     }
     all
+}
+
+/// A state that a filter and a smoother have found.
+fn state(own: &SolvedState, descriptions: &Descriptions) -> Markup {
+    let kinds = [("from measurements up to then", 1, 2), ("from all measurements", 3, 4)];
+    let mut all = Vec::new();
+    for (number, (name, value, sd)) in kinds.into_iter().enumerate() {
+        let colour = 1 + 2 * number;
+        let edge =
+            |side: f64| move |at: &[f64; 5]| (at[0], (side * NORMAL).mul_add(at[sd], at[value]));
+        let upper = own.points.iter().map(edge(1.0));
+        let around: Vec<(f64, f64)> =
+            upper.chain(own.points.iter().rev().map(edge(-1.0))).collect();
+        let line: Vec<(f64, f64)> = own.points.iter().map(|at| (at[0], at[value])).collect();
+        all.push(series(&format!("95 % band, {name}"), &around, Mark::Area, colour));
+        all.push(series(name, &line, Mark::Line, colour));
+    }
+    let y = descriptions.axis(&own.y);
+    let name = match own.experiment.is_empty() {
+        true => own.y[0].clone(),
+        false => format!("{} / {}", own.experiment, own.y[0]),
+    };
+    let label = format!("{name}: the state as filter and smoother find it, with 95 % bands");
+    let caption =
+        html! { strong { (name) } ": the state, as the filter and the smoother find it." };
+    figure(&one_panel(Axis::linear("time", "s"), y, 230.0, all), &label, &caption)
 }
 
 /// The curve of a variable that was not measured.

@@ -49,7 +49,8 @@ fn run(
     let mut session = Session::new(Box::new(MemoryWorld::new()));
     session.load_text("Model.mo", model).unwrap();
     let class = model.split_whitespace().nth(1).unwrap();
-    let found = filtered(&mut session, class, (noise, measured), 0.0, Span::NONE).unwrap();
+    let what = (noise, measured, Purpose::Likelihood);
+    let found = filtered(&mut session, class, what, 0.0, Span::NONE).unwrap();
     let model = CompiledModel::new(class, found.translated.program.clone());
     let mut settings = model.settings();
     settings.tolerance = 1e-10;

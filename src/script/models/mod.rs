@@ -32,6 +32,7 @@ mod reading;
 mod resources;
 mod restart;
 pub mod simulation;
+pub(crate) mod smoother;
 pub(crate) mod spectrum;
 pub(crate) mod static_curve;
 pub mod stored;

@@ -210,23 +210,22 @@ fn states_are_estimated_with_given_parameters() {
     assert!(out.contains("80 samples, -log L = -20.52807"), "{out}");
     assert!(out.contains("w = "), "{out}");
     let table = std::fs::read_to_string(folder.path().join("s.csv")).unwrap();
-    let head = "\"time\",\"T\",\"sd(T)\",\"w\",\"sd(w)\",\"predicted(T)\",\"sd(predicted(T))\",\"measured(T)\"";
-    assert_eq!(table.lines().next(), Some(head));
-    let last: Vec<f64> =
-        table.lines().last().unwrap().split(',').map(|own| own.parse().unwrap()).collect();
     // By the same filter in numpy: states after the last sample, prediction before it.
     let expected = [
-        79.0,
-        -1.433991103,
-        0.081033163,
-        -1.318963534,
-        0.503688025,
-        -1.303157150,
-        0.190105633,
-        -1.475000000,
+        ("time", 79.0),
+        ("T", -1.433991103),
+        ("sd(T)", 0.081033163),
+        ("w", -1.318963534),
+        ("sd(w)", 0.503688025),
+        ("smoothed(w)", -1.318963534),
+        ("sd(smoothed(w))", 0.503688025),
+        ("predicted(T)", -1.303157150),
+        ("sd(predicted(T))", 0.190105633),
+        ("measured(T)", -1.475000000),
     ];
-    for (found, expected) in last.iter().zip(expected) {
-        assert!((found - expected).abs() < 1e-6, "{last:?}");
+    for (name, expected) in expected {
+        let found = *column(&table, name).last().unwrap();
+        assert!((found - expected).abs() < 1e-6, "{name}: {found}");
     }
     assert!(std::fs::read_to_string(folder.path().join("s.svg")).unwrap().contains("95 % band"));
     let free = room_problem("0.6", ", sigma = 0.1");
@@ -242,4 +241,132 @@ fn states_are_estimated_with_given_parameters() {
     assert_eq!(code, 0, "{out}{error}");
     let (code, out, error) = gapi(&folder, &["estimate", "p.toml", "--values", "o/result.json"]);
     assert_eq!(code, 0, "{out}{error}");
+}
+
+/// A column of a table in a CSV file; cells that are empty are not numbers.
+fn column(table: &str, name: &str) -> Vec<f64> {
+    let mut lines = table.lines();
+    let names: Vec<&str> = lines.next().unwrap().split("\",\"").collect();
+    let at = names.iter().position(|own| own.trim_matches('"') == name).expect(name);
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
+}
+
+/// Two capacities with noise on both, two outputs of which the second one is a mixture, and initial values
+/// that are uncertain.
+const HOUSE: &str = "model House
+  parameter Real Ci = 2, Ce = 10, Ri = 0.5, Ro = 1.5;
+  Real Ti(start = 20, fixed = true), Te(start = 17, fixed = true), Tm;
+equation
+  Ci*der(Ti) = (Te - Ti)/Ri + 3;
+  Ce*der(Te) = (Ti - Te)/Ri - Te/Ro;
+  Tm = 0.3*Ti + 0.7*Te;
+end House;
+";
+
+fn house_data() -> String {
+    let times = [0.0, 0.5, 1.0, 1.7, 2.5, 3.0, 5.0];
+    let mut data = "time [s],Ti,Tm\n".to_owned();
+    for (k, time) in times.iter().enumerate() {
+        let k = k as f64;
+        let cell = |missing: f64, value: f64| match k == missing {
+            true => String::new(),
+            false => format!("{value:.17}"),
+        };
+        let [first, second] =
+            [cell(4.0, 20.0 + (2.0 * k).sin() + 0.5 * k), cell(2.0, 18.0 + (3.0 * k).cos())];
+        writeln!(data, "{time},{first},{second}").unwrap();
+    }
+    // Nothing is measured in this row.
+    data.replace("\n2.5,", "\n2.0,,\n2.5,")
+}
+
+/// No parameters are estimated, and none need be written.
+const HOUSE_PROBLEM: &str = "model = \"House\"
+files = [\"M.mo\"]
+[noise]
+Ti = { value = 0.3, initial = 0.5 }
+Te = { value = 0.1, initial = 1.0 }
+[[experiment]]
+data = \"d.csv\"
+tolerance = 1e-10
+outputs.Ti = { column = \"Ti\", sigma = 0.2 }
+outputs.Tm = { column = \"Tm\", sigma = 0.4 }
+";
+
+/// By numpy: a Kalman filter with matrix exponentials, and the smoother of Rauch, Tung and Striebel with
+/// inverse covariances.
+#[test]
+fn smoothed_states_are_those_of_an_exact_smoother() {
+    let folder = folder(&[("M.mo", HOUSE), ("d.csv", &house_data()), ("p.toml", HOUSE_PROBLEM)]);
+    let arguments =
+        ["estimate", "p.toml", "--output", "s.csv", "--steps", "2", "--every", "2", "--until", "6"];
+    let (code, out, error) = gapi(&folder, &arguments);
+    assert_eq!(code, 0, "{out}{error}");
+    assert!(out.contains("7 samples, -log L = 161.8609"), "{out}");
+    assert!(out.contains("states at 6 s") && out.contains("(the last measurement is that at 5 s)"));
+    let table = std::fs::read_to_string(folder.path().join("s.csv")).unwrap();
+    let names = ["time", "smoothed(Ti)", "smoothed(Te)", "sd(smoothed(Ti))", "sd(smoothed(Te))"];
+    let columns = names.map(|name| column(&table, name));
+    // Time, both states, and their variances.
+    let expected = [
+        [0.0, 20.128786158448918, 20.041752248137, 0.03004123353891376, 0.05404753176542568],
+        [0.5, 20.816385247119, 19.491638801448623, 0.0176729271738779, 0.03885125382871738],
+        [1.0, 20.71711128054754, 19.095559169124012, 0.018208029150701296, 0.030438012878249515],
+        [1.7, 20.974150542116146, 18.63725095395098, 0.019840564583178705, 0.023237788125929214],
+        [2.0, 20.99010909149344, 18.493992657103657, 0.030797013940137362, 0.021575638311735833],
+        [2.5, 21.035137180893567, 18.272121957927403, 0.0338511411057388, 0.019577202499374016],
+        [3.0, 21.20619211595924, 18.069173262975244, 0.02181215768664592, 0.018720724847401404],
+        [4.0, 20.70987551140038, 17.715302560397035, 0.04442828352430009, 0.01958987777982795],
+        [5.0, 21.04971094868217, 17.329469925963803, 0.024171474039174558, 0.020819078680050736],
+        [6.0, 19.46313634602361, 16.807910449781975, 0.05715583315757669, 0.024927356870253665],
+    ];
+    assert_eq!(columns[0].len(), expected.len());
+    for (row, expected) in expected.iter().enumerate() {
+        let sd = [columns[3][row], columns[4][row]].map(|sd| sd * sd);
+        let found = [columns[0][row], columns[1][row], columns[2][row], sd[0], sd[1]];
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{row}: {found} {expected}");
+        }
+    }
+    // Predictions from all samples up to the last but one: numpy.
+    let ahead = ["predicted over 2(Ti)", "sd(predicted over 2(Ti))", "simulated(Tm)"];
+    let [mean, sd, simulated] =
+        ahead.map(|name| *column(&table, name).iter().rev().nth(1).unwrap());
+    for (found, expected) in
+        [(mean, 17.760111551776127), (sd, 0.3502639619478587), (simulated, 14.712861620209903)]
+    {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+    // Where there were not two samples before, there is none.
+    assert!(column(&table, "predicted over 2(Ti)")[1].is_nan());
+}
+
+#[test]
+fn rows_and_steps_that_cannot_be_are_refused() {
+    let of = |problem: &str, data: &str, more: [&str; 2]| {
+        let folder = folder(&[("M.mo", HOUSE), ("d.csv", data), ("p.toml", problem)]);
+        let (code, _, error) = gapi(&folder, &["estimate", "p.toml", more[0], more[1]]);
+        assert_eq!(code, 1, "{error}");
+        error
+    };
+    let data = house_data();
+    for (more, expected) in [
+        (["--steps", "1"], "write a number from 2 to 6"),
+        (["--steps", "7"], "predictions over 7 samples"),
+        (["--every", "0"], "write a positive number"),
+        (["--every", "1e-9"], "write a positive number"),
+    ] {
+        let error = of(HOUSE_PROBLEM, &data, more);
+        assert!(error.contains(expected), "{error}");
+    }
+    let room = room_problem("0.6", ", sigma = 0.1");
+    let folder = folder(&[("M.mo", ROOM), ("d.csv", &room_data()), ("p.toml", &room)]);
+    let arguments = ["estimate", "p.toml", "--until", "100"];
+    let (code, _, error) = gapi(&folder, &arguments);
+    assert_eq!(code, 1, "{error}");
+    let problem = room.replace("max = 20 }", "max = 20, start = 4 }");
+    std::fs::write(folder.path().join("p.toml"), problem).unwrap();
+    let (code, _, error) = gapi(&folder, &arguments);
+    assert_eq!(code, 1, "{error}");
+    assert!(error.contains("has the inputs up to 79 s, not up to 100 s"), "{error}");
 }

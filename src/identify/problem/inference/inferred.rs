@@ -1,7 +1,7 @@
 //! What inference has found, and its tables and sentences.
 
 use super::{Band, BandPoint, Bootstrap, Likelihood, NextMeasurement, Posterior};
-use crate::problem::Finding;
+use crate::problem::{Finding, SolvedState};
 use crate::table::quoted;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +23,9 @@ pub struct Inferred {
     /// The posterior.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub posterior: Option<Posterior>,
+    /// States that a filter and a smoother have found.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub states: Vec<SolvedState>,
     /// About priors and constraints; they go to the findings of the solution.
     #[serde(skip)]
     pub findings: Vec<Finding>,

@@ -25,6 +25,7 @@ use crate::identify::problem::{
     Origins, Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::mat::MatFile;
+use crate::models::filter::UncertainStates;
 use crate::registry::{self, BAD_OPTION, Options};
 use crate::source::Span;
 use crate::{bail, fault, results};
@@ -40,6 +41,8 @@ pub(super) struct Built {
     pub problem: Problem,
     /// The experiments that are fitted, for drawing their curves.
     pub experiments: Vec<Experiment>,
+    /// The uncertain states of each of these, where they are filtered.
+    pub states: Vec<UncertainStates>,
     pub validation: Vec<(Experiment, Vec<Series>)>,
     /// The problem, its data, and every Modelica text that was read for it.
     pub origins: Origins,
@@ -67,8 +70,8 @@ struct ExperimentData<'f> {
 #[derive(Default)]
 struct Experiments {
     fitted: Vec<Experiment>,
-    /// The uncertain states of each of these, and their variances.
-    states: Vec<Vec<[String; 2]>>,
+    /// The uncertain states of each of these.
+    states: Vec<UncertainStates>,
     series: Vec<Series>,
     validation: Vec<(Experiment, Vec<Series>)>,
     rests: Vec<[Experiment; 2]>,
@@ -117,6 +120,7 @@ fn build_in(
     }
     let Experiments {
         fitted,
+        states,
         series,
         validation,
         rests,
@@ -124,7 +128,6 @@ fn build_in(
         calibration,
         undecided,
         logarithmic,
-        ..
     } = read;
     let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &fitted);
@@ -145,7 +148,17 @@ fn build_in(
     let notes = notes.into_notes();
     let noise = (!file.noise.is_empty()).then(|| noise::estimated(file));
     let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise, rests };
-    Ok(Built { problem, experiments, validation, origins, notes, calibration, doubts, unit })
+    Ok(Built {
+        problem,
+        experiments,
+        states,
+        validation,
+        origins,
+        notes,
+        calibration,
+        doubts,
+        unit,
+    })
 }
 
 /// The experiments of a problem, and its free parameters.
@@ -155,11 +168,12 @@ struct Prepared {
     unit: Option<Arc<Imported>>,
 }
 
-/// An experiment that is filtered, with its uncertain states and their variances.
+/// An experiment that is filtered, with its uncertain states.
+#[derive(Clone)]
 pub(super) struct FilteredExperiment {
     pub experiment: Experiment,
     pub series: Vec<Series>,
-    pub states: Vec<[String; 2]>,
+    pub states: UncertainStates,
 }
 
 /// Experiments, the free parameters of their problem, and what should be known of the data.
@@ -181,13 +195,21 @@ pub(super) fn filtered_experiments(
     let made = prepared(session, file, folder, (&mut notes, &mut origins));
     session.execution.read_problem(around);
     let Prepared { read, free, .. } = made?;
-    let mut series = read.series.into_iter();
-    let with_states = read.fitted.into_iter().zip(read.states);
-    let all = with_states.map(|(experiment, states)| {
+    Ok((with_states(read.fitted, read.states, read.series), free, notes.into_notes()))
+}
+
+/// Experiments with their uncertain states and their own of all series.
+pub(super) fn with_states(
+    experiments: Vec<Experiment>,
+    states: Vec<UncertainStates>,
+    series: Vec<Series>,
+) -> Vec<FilteredExperiment> {
+    let mut series = series.into_iter();
+    let all = experiments.into_iter().zip(states).map(|(experiment, states)| {
         let series = series.by_ref().take(experiment.observations.len()).collect();
         FilteredExperiment { experiment, series, states }
     });
-    Ok((all.collect(), free, notes.into_notes()))
+    all.collect()
 }
 
 /// Reads models and data.

@@ -18,6 +18,7 @@ use crate::flatten::{self, FlatModel};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
 use crate::mat::{Column, MatFile};
+use crate::models::filter::UncertainStates;
 use crate::models::imported::CO_SIMULATION;
 use crate::models::simulation::{self, SimulationOptions};
 use crate::models::static_curve;
@@ -48,8 +49,8 @@ pub(super) struct Built {
     pub series: Vec<Series>,
     /// The relative error of simulated values that the integrator makes.
     pub(crate) error: f64,
-    /// Where it is filtered, its uncertain states and their variances.
-    pub states: Vec<[String; 2]>,
+    /// Where it is filtered, its uncertain states.
+    pub states: UncertainStates,
     /// Its compiled model; `None` where it is a functional mock-up unit.
     pub program: Option<Arc<Program>>,
     /// Inputs of which it is not known how they continue between samples.
@@ -63,7 +64,7 @@ impl Built {
         error: f64,
         program: Option<Arc<Program>>,
     ) -> Built {
-        let (states, undecided) = (Vec::new(), Vec::new());
+        let (states, undecided) = (UncertainStates::default(), Vec::new());
         Built { experiment, series, error, states, program, undecided }
     }
 }
@@ -202,9 +203,10 @@ impl Source<'_> {
         };
         let compared = self.compare(session, subject, (&abscissa, &class.observed), notes)?;
         let (experiment, series, program, states) = match self.file.noise.is_empty() {
-            true => (compared.0, compared.1, program, Vec::new()),
+            true => (compared.0, compared.1, program, UncertainStates::default()),
             false => {
-                filtering::filtered(session, (self.file, self.entry), &class.name, compared, notes)?
+                let (own, class) = ((self.file, self.entry), (&*class.name, &*abscissa.time));
+                filtering::filtered(session, own, class, compared, notes)?
             }
         };
         let error = if has_states { error_of(&program, &experiment.settings) } else { 0.0 };

@@ -2,10 +2,11 @@
 
 use super::places::Places;
 use super::refusal;
-use crate::bail;
 use crate::diag::Diagnostic;
+use crate::models::filter::Ahead;
 use crate::registry::BAD_OPTION;
 use crate::source::{SourceId, Span};
+use crate::{bail, fault};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use std::ops::Deref;
@@ -22,6 +23,7 @@ pub(super) struct ProblemFile {
     /// Modelica files and folders, relative to the problem's file.
     #[serde(default)]
     pub files: Vec<PathBuf>,
+    #[serde(default)]
     pub parameters: IndexMap<String, ParameterEntry>,
     /// Process noise of states.
     #[serde(default)]
@@ -244,7 +246,7 @@ pub(super) enum SigmaEntry {
 }
 
 /// What predictions are made with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) enum Filtering {
     /// Noise and measurements.
     #[default]
@@ -253,6 +255,19 @@ pub(super) enum Filtering {
     WithoutNoise,
     /// No measurements.
     Simulated,
+    /// Noise and measurements, and after them those that are later; also at these times.
+    Smoothed(MoreTimes),
+    /// In the experiment of this name, the states that the filter has found so many samples before.
+    Ahead(String, Ahead),
+}
+
+/// Times at which states are estimated besides those of the rows.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct MoreTimes {
+    /// The seconds between them.
+    pub every: Option<f64>,
+    /// The last one, where it is not that of the last row.
+    pub until: Option<f64>,
 }
 
 /// Process noise of a state: a number, `estimate`, or a table.
@@ -422,6 +437,11 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
     refusal::printable(&file.table).map_err(|fault| fault.at(Span::new(source, 0, 0)))?;
     file.text = text.to_owned();
     file.places = Places::of(source, text);
+    if file.noise.is_empty() && file.table.contains_key("noise") {
+        let fault = fault!(BAD_OPTION, "`[noise]` names no state")
+            .help("write a state with its noise, `T = \"estimate\"`, or remove the table");
+        return Err(fault.at(file.places.at(&["noise"])));
+    }
     for (number, entry) in file.experiment.iter_mut().enumerate() {
         let own = file.places.within(&["experiment", &number.to_string()]);
         entry.places = own.cloned().unwrap_or_default();

@@ -3,7 +3,7 @@
 
 use super::data::Notes;
 use super::enclosing_class::own_name;
-use super::file::{ColumnEntry, ExperimentEntry, Filtering, ProblemFile};
+use super::file::{ColumnEntry, ExperimentEntry, Filtering, MoreTimes, ProblemFile};
 use super::noise::{deviation, of_states};
 use crate::Session;
 use crate::codegen::Program;
@@ -11,15 +11,19 @@ use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::identify::CompiledModel;
 use crate::identify::problem::{Experiment, Observation, Series, Sigma};
-use crate::models::filter::{self, Measured, MeasuredSigma};
+use crate::models::filter::{self, Measured, MeasuredSigma, Noise, Purpose, UncertainStates};
 use crate::registry::BAD_OPTION;
+use crate::source::Span;
 use std::sync::Arc;
 
-/// An experiment with its series, its program, and the uncertain states with their variances.
-pub(super) type FilteredModel = (Experiment, Vec<Series>, Arc<Program>, Vec<[String; 2]>);
+/// The largest number of times at which states are estimated besides those of the rows.
+const MOST_TIMES: f64 = 1e6;
+
+/// An experiment with its series, its program, and its uncertain states.
+pub(super) type FilteredModel = (Experiment, Vec<Series>, Arc<Program>, UncertainStates);
 
 /// The experiment with the filtered model of this class in place of its model: its points are
-/// predictions.
+/// predictions. `rows`: the times of all rows of the data.
 ///
 /// # Errors
 ///
@@ -27,7 +31,7 @@ pub(super) type FilteredModel = (Experiment, Vec<Series>, Arc<Program>, Vec<[Str
 pub(super) fn filtered(
     session: &mut Session,
     (file, entry): (&ProblemFile, &ExperimentEntry),
-    class: &str,
+    (class, rows): (&str, &[f64]),
     (mut experiment, mut series): (Experiment, Vec<Series>),
     notes: &mut Notes,
 ) -> Result<FilteredModel, Vec<Diagnostic>> {
@@ -51,8 +55,23 @@ pub(super) fn filtered(
         })
         .collect();
     let start = experiment.settings.start;
+    note_certain_start(file, (&noise, &measured, start), &experiment.name, notes);
     let place = file.places.at(&["noise"]);
-    let found = filter::filtered(session, class, (&noise, &measured), start, place)?;
+    let more = match &file.filtering {
+        Filtering::Smoothed(more) => {
+            let times = times(entry, rows, start, *more).at(Span::NONE).map_err(one)?;
+            let last = times.iter().copied().fold(experiment.settings.stop, f64::max);
+            experiment.settings.stop = last;
+            times
+        }
+        _ => Vec::new(),
+    };
+    let purpose = match &file.filtering {
+        Filtering::Smoothed(_) => Purpose::Smoothing(&more),
+        Filtering::Ahead(name, ahead) if *name == experiment.name => Purpose::Ahead(ahead),
+        _ => Purpose::Likelihood,
+    };
+    let found = filter::filtered(session, class, (&noise, &measured, purpose), start, place)?;
     let program = found.translated.program.clone();
     experiment.model = Arc::new(CompiledModel::new(&file.model, program.clone()));
     experiment.deviations = found.outputs.len();
@@ -69,6 +88,55 @@ pub(super) fn filtered(
         notes.add(format!("{experiment}: `{name}` has no `sigma`; it is estimated"));
     }
     Ok((experiment, series, program, found.states))
+}
+
+/// The times of rows at which nothing was measured, and those that are asked for besides.
+fn times(
+    entry: &ExperimentEntry,
+    rows: &[f64],
+    start: f64,
+    more: MoreTimes,
+) -> Result<Vec<f64>, Fault> {
+    let own: Vec<f64> = rows.iter().copied().filter(|time| *time >= start).collect();
+    let last = own.iter().copied().fold(start, f64::max);
+    let end = more.until.unwrap_or(last);
+    if end > last && !entry.inputs.is_empty() {
+        let name = entry.data.display();
+        return Err(fault!(
+            BAD_OPTION,
+            "`{name}` has the inputs up to {last} s, not up to {end} s"
+        )
+        .help("add rows with the inputs to it; cells of outputs may be empty"));
+    }
+    let Some(every) = more.every else {
+        return Ok(own.into_iter().chain(more.until).collect());
+    };
+    let count = ((end - start) / every).floor();
+    if !(every > 0.0 && (0.0..=MOST_TIMES).contains(&count)) {
+        return Err(fault!(BAD_OPTION, "{every} s between times is not possible")
+            .help("write a positive number of seconds that divides the data into rows"));
+    }
+    let grid = (0..=count as usize).map(|k| every.mul_add(k as f64, start));
+    Ok(own.into_iter().chain(grid).chain(more.until).collect())
+}
+
+/// Says where the first measurements are compared with states that are certain.
+fn note_certain_start(
+    file: &ProblemFile,
+    (noise, measured, start): (&[Noise], &[Measured], f64),
+    experiment: &str,
+    notes: &mut Notes,
+) {
+    let is_uncertain = noise.iter().any(|own| own.initial > 0.0)
+        || file.parameters.values().any(|own| own.initial);
+    let is_measured = measured.iter().any(|own| own.times.first() == Some(&start));
+    if is_measured && !is_uncertain {
+        notes.add(format!(
+            "{experiment}: the states at the start are certain, so the first measurements tell of the \
+             errors of measurement alone; say how uncertain the states are, `{{ value = \"estimate\", \
+             initial = 0.5 }}` in `[noise]`, or estimate them (`initial = true` in `[parameters]`)"
+        ));
+    }
 }
 
 /// Refuses noise on what the model does not have, at the name.

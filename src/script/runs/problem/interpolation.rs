@@ -7,7 +7,9 @@ use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
 use crate::elementary;
-use crate::identify::problem::{Best, EndingKind, Finding, FindingKind, Run, Severity, Solution};
+use crate::identify::problem::{
+    Best, EndingKind, ErrorModel, Finding, FindingKind, Run, Severity, Solution,
+};
 use crate::identify::significant;
 
 /// Twice the logarithm of the ratio of the likelihoods below which these data do not show which of two
@@ -69,6 +71,8 @@ pub(super) fn try_others(
 /// The fit and that with the other interpolation.
 struct Compared {
     objectives: [f64; 2],
+    /// Whether these are -log L, and not sums of squares.
+    is_likelihood: bool,
     points: usize,
     /// Parameters that move out of their intervals, by so many standard errors, the farthest first.
     moved: Vec<(String, f64)>,
@@ -89,13 +93,20 @@ impl Compared {
         moved.sort_by(|a, b| b.1.total_cmp(&a.1));
         let objectives = [solution.fitness, fitness];
         let points = solution.series.iter().map(|series| series.points.len()).sum();
-        Some(Compared { objectives, points, moved, has_pattern: solution.has_pattern() })
+        let is_likelihood =
+            matches!(solution.likelihood.error_model, ErrorModel::Computed | ErrorModel::Estimated);
+        let has_pattern = solution.has_pattern();
+        Some(Compared { objectives, is_likelihood, points, moved, has_pattern })
     }
 
     /// Whether these data do not show which of the two is right.
     fn is_equal(&self) -> bool {
         let [own, other] = self.objectives;
-        own == other || self.points as f64 * elementary::ln(other / own).abs() <= SUPPORT
+        let ratio = match self.is_likelihood {
+            true => 2.0 * (other - own),
+            false => self.points as f64 * elementary::ln(other / own),
+        };
+        own == other || ratio.abs() <= SUPPORT
     }
 
     /// Whether these data speak clearly for the fit that was made.
@@ -145,9 +156,9 @@ fn finding(names: &[&str], assumed: Between, compared: Option<Compared>) -> Find
             "\"{}\" fits better{}, but the residuals have a pattern, so neither is shown to be right; \
              write what is known of the inputs, or sample them more often",
             better.name(),
-            by(own, other)
+            by(&compared)
         ),
-        (false, false) => format!("\"{}\" fits better{}", better.name(), by(own, other)),
+        (false, false) => format!("\"{}\" fits better{}", better.name(), by(&compared)),
     };
     let is_advised = !is_equal && !compared.has_pattern && better != assumed;
     let write = match is_advised {
@@ -174,7 +185,11 @@ fn finding(names: &[&str], assumed: Between, compared: Option<Compared>) -> Find
 }
 
 /// By how much the better of two objectives is better.
-fn by(own: f64, other: f64) -> String {
+fn by(compared: &Compared) -> String {
+    let [own, other] = compared.objectives;
+    if compared.is_likelihood {
+        return format!(" by {} of it", significant((own - other).abs(), 3));
+    }
     let ratio = own.max(other) / own.min(other);
     match ratio.is_finite() && own.min(other) > 0.0 {
         true if ratio < FEW_PERCENT => format!(" by {} %", significant(100.0 * (ratio - 1.0), 2)),
@@ -191,6 +206,7 @@ mod tests {
     fn small_differences_are_said_in_percent() {
         let compared = |other| Compared {
             objectives: [0.0025, other],
+            is_likelihood: false,
             points: 1000,
             moved: Vec::new(),
             has_pattern: false,
@@ -205,10 +221,31 @@ mod tests {
         assert!(said(0.00249).contains("do not show which is right"), "{}", said(0.00249));
     }
 
+    /// Likelihoods are compared by their difference, whatever their sign.
+    #[test]
+    fn likelihoods_are_compared_by_their_difference() {
+        let compared = |own, other| Compared {
+            objectives: [own, other],
+            is_likelihood: true,
+            points: 1000,
+            moved: Vec::new(),
+            has_pattern: false,
+        };
+        let said =
+            |own, other| finding(&["I"], Between::Constant, Some(compared(own, other))).sentence;
+        for size in [-500.0, 0.5, 500.0] {
+            let alike = said(size, size - 4.0);
+            assert!(alike.contains("do not show which is right"), "{alike}");
+            let better = said(size, size - 6.0);
+            assert!(better.contains("\"linear\" fits better by 6 of it;"), "{better}");
+        }
+    }
+
     #[test]
     fn equal_objectives_with_other_estimates_are_a_warning() {
         let compared = |has_pattern, other| Compared {
             objectives: [0.0025, other],
+            is_likelihood: false,
             points: 1000,
             moved: vec![("R".to_owned(), 9.0), ("C".to_owned(), 4.25)],
             has_pattern,

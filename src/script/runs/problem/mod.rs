@@ -76,7 +76,7 @@ use crate::{bail, fault};
 pub use draft::{Draft, Question, draft};
 pub use draft_subject::DraftOptions;
 pub use driven::{Driven, driven, note_outside};
-pub use estimate::{Estimated, estimate};
+pub use estimate::{EstimateOptions, Estimated, Shown, estimate};
 pub use imported::{FollowedInputs, inputs_of};
 pub use petab::petab;
 pub use shards::{Division, read_shards};
@@ -266,8 +266,7 @@ fn solve_built(
     again: &mut searches::Again<'_>,
     why: &mut Option<Cause>,
 ) -> Result<Solution, Fault> {
-    let Built { problem, experiments, validation, origins, notes, calibration, doubts, unit: _ } =
-        built;
+    let Built { problem, experiments, validation, origins, notes, calibration, doubts, .. } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = prepared(session, problem, options, why)?;
     let importance = analysed(session, &run, &folder, options)?;

@@ -6,7 +6,7 @@ use super::enclosing_class::{EnclosingClass, own_name};
 use super::file::{ColumnEntry, ExperimentEntry, Filtering, NoiseEntry, ProblemFile, SigmaEntry};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::elementary;
-use crate::identify::problem::{Experiment, Free, Series};
+use crate::identify::problem::{Experiment, Free, NOISE_OF, Series};
 use crate::models::filter::Noise;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
@@ -99,7 +99,7 @@ fn own_parameters(file: &ProblemFile) -> Result<Vec<Own>, Diagnostic> {
         if let Density::Estimated { range, start } =
             entry.density(state).at(file.places.at(&["noise", state]))?
         {
-            let (name, in_class) = (format!("noise of {state}"), own_name("noise of", state));
+            let (name, in_class) = (format!("{NOISE_OF}{state}"), own_name("noise of", state));
             all.push(Own { name, in_class, range, start, of: Subject::State(state.clone()) });
         }
     }
@@ -187,7 +187,8 @@ pub(super) fn set_ranges(
             Some(range) => (range, own.start),
             None => {
                 let Some((size, interval)) = change(series, name, &unit) else {
-                    return Err(no_range(name).at(place(file, &own.of)));
+                    let measured = like(series, name, &unit);
+                    return Err(no_range(name, measured).at(place(file, &own.of)));
                 };
                 let root = if matches!(own.of, Subject::State(_)) { interval.sqrt() } else { 1.0 };
                 // With less noise than the data move, predictions do not follow them, and a descent
@@ -201,16 +202,25 @@ pub(super) fn set_ranges(
     Ok(())
 }
 
-fn no_range(state: &str) -> Fault {
-    fault!(BAD_OPTION, "the data give no range for the noise of `{state}`: no output has its unit")
+fn no_range(state: &str, measured: Option<&Series>) -> Fault {
+    let why = match measured {
+        None => "no output has its unit".to_owned(),
+        Some(own) => format!("`{}` has the same value in all rows", own.y_name),
+    };
+    fault!(BAD_OPTION, "the data give no range for the noise of `{state}`: {why}")
         .help("write one: `{ min = 1e-4, max = 1e-1 }`, the standard deviation that it adds in 1 s")
+}
+
+/// The measurements of a variable, or else of an output with its unit.
+fn like<'s>(series: &'s [Series], name: &str, unit: &str) -> Option<&'s Series> {
+    let own = series.iter().find(|own| own.y_name == name);
+    own.or_else(|| series.iter().find(|own| own.y_unit == unit))
 }
 
 /// The root mean square of the changes of a variable from row to row, and the mean time between them;
 /// where the variable is not measured, those of an output with its unit.
 fn change(series: &[Series], name: &str, unit: &str) -> Option<(f64, f64)> {
-    let own = series.iter().find(|own| own.y_name == name);
-    let own = own.or_else(|| series.iter().find(|own| own.y_unit == unit))?;
+    let own = like(series, name, unit)?;
     let squares = own.y.windows(2).map(|pair| elementary::powi(pair[1] - pair[0], 2));
     let count = squares.len().max(1) as f64;
     let size = (squares.sum::<f64>() / count).sqrt();

@@ -1,11 +1,15 @@
-//! After a fit with process noise: one without it, and a simulation that does not see the data.
+//! After a fit with process noise: one without it, a simulation that does not see the data, and the states
+//! from all data.
 
-use super::file::{Filtering, ProblemFile};
+use super::build::with_states;
+use super::estimate::Estimation;
+use super::file::{Filtering, MoreTimes, ProblemFile};
 use super::searches::{Again, Change};
 use crate::Session;
 use crate::diag::Fault;
 use crate::identify::problem::{
-    EndingKind, Finding, FindingKind, NoiseComparison, Problem, Run, Solution, SolvedParameter,
+    EndingKind, Finding, FindingKind, NoiseComparison, Problem, Run, Series, Solution,
+    SolvedParameter,
 };
 
 /// Compares a fit with what its densities `names` add, and says it.
@@ -43,8 +47,22 @@ pub(super) fn compare(
     let other = again(session, Change::Entries(&change))?;
     solution.effort.simulations_for_statistics += 1;
     let values: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
-    let simulated = errors(&other.problem, &values)?;
+    let simulated = simulated(&other.problem, &values)?;
     solution.judge_noise(&NoiseComparison { names, without, simulated });
+    let change =
+        |file: &mut ProblemFile| file.filtering = Filtering::Smoothed(MoreTimes::default());
+    let other = again(session, Change::Entries(&change))?;
+    solution.effort.simulations_for_statistics += 1;
+    let all = with_states(other.experiments, other.states, other.problem.series);
+    for own in &all {
+        match Estimation::of(own, &values) {
+            Ok(found) => solution.inferred.states.extend(found.states()),
+            Err(fault) => {
+                let sentence = format!("The states are not smoothed: {}.", fault.message);
+                solution.findings.push(Finding::new(FindingKind::ProcessNoise, sentence));
+            }
+        }
+    }
     Ok(())
 }
 
@@ -66,19 +84,17 @@ fn wider(solution: &Solution) -> Vec<Vec<f64>> {
     FACTORS.iter().filter(|_| has_sigma).map(start).collect()
 }
 
-/// The root mean squared residuals of the measured series.
-fn errors(problem: &Problem, values: &[f64]) -> Result<Option<Vec<f64>>, Fault> {
+/// The points of the measured series; `None` where the simulation fails.
+fn simulated(problem: &Problem, values: &[f64]) -> Result<Option<Vec<Vec<f64>>>, Fault> {
     let count = problem.series.iter().map(|own| own.x.len()).sum();
     let mut row = vec![0.0; count];
     if (problem.simulator)()?.simulate(values, &mut row).is_err() {
         return Ok(None);
     }
-    let mut rest = &row[..];
-    let error = |own: &crate::identify::problem::Series| {
-        let (simulated, others) = rest.split_at(own.x.len());
-        rest = others;
-        let squares = own.y.iter().zip(simulated).map(|(y, s)| (y - s) * (y - s));
-        own.is_data().then(|| (squares.sum::<f64>() / own.y.len() as f64).sqrt())
+    let mut rest = row.into_iter();
+    let points = |own: &Series| {
+        let points = rest.by_ref().take(own.x.len()).collect();
+        own.is_data().then_some(points)
     };
-    Ok(Some(problem.series.iter().filter_map(error).collect()))
+    Ok(Some(problem.series.iter().filter_map(points).collect()))
 }
