@@ -90,7 +90,7 @@ pub use non_identifiable::Form;
 pub(crate) use non_identifiable::NonIdentifiable;
 use parts::other_shards;
 pub use parts::{Parts, Shard, ShardFile, missing_shards};
-pub(crate) use plane::planes;
+pub(crate) use plane::{SpectrumFigures, planes};
 pub use portable::{Portable, PortableExperiment};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;

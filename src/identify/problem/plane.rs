@@ -1,12 +1,26 @@
-//! Spectra in the plane of complex numbers (Nyquist plots).
+//! Pictures of spectra: in the plane of complex numbers (Nyquist plots), and magnitude, phase and residuals
+//! over the frequency (Bode plots).
 
 use super::SolvedSeries;
-use crate::plot::{Axis, Figure, Mark, Series, of_points};
+use crate::elementary;
+use crate::plot::{Axis, Figure, Mark, Panel, Series, of_points};
 use crate::spectrum::{FREQUENCY, PARTS};
+use std::f64::consts::PI;
 
-/// A picture for each experiment of which real and imaginary parts were measured, with its name. The
-/// imaginary part goes downwards, as is usual for impedances.
-pub(crate) fn planes(all: &[SolvedSeries]) -> Vec<(&str, Figure)> {
+/// The pictures of a measured spectrum.
+pub(crate) struct SpectrumFigures<'a> {
+    /// The experiment.
+    pub name: &'a str,
+    /// The imaginary part goes downwards, as is usual for impedances.
+    pub plane: Figure,
+    pub bode: Figure,
+}
+
+/// Frequency, real and imaginary part.
+type Point = [f64; 3];
+
+/// Pictures for each experiment of which real and imaginary parts were measured.
+pub(crate) fn planes(all: &[SolvedSeries]) -> Vec<SpectrumFigures<'_>> {
     let is_part =
         |series: &SolvedSeries, name: &str| series.x[0] == FREQUENCY && series.y[0] == name;
     let ordered = all.windows(2).filter_map(|pair| match pair {
@@ -15,34 +29,117 @@ pub(crate) fn planes(all: &[SolvedSeries]) -> Vec<(&str, Figure)> {
         _ => None,
     });
     let of_one = ordered.filter(|(a, b)| a.experiment == b.experiment);
-    of_one.map(|(real, imaginary)| (real.experiment.as_str(), plane(real, imaginary))).collect()
+    let figures = of_one.map(|(real, imaginary)| SpectrumFigures {
+        name: real.experiment.as_str(),
+        plane: plane(real, imaginary),
+        bode: bode(real, imaginary),
+    });
+    figures.collect()
+}
+
+/// The points of both parts by the frequency: one may lack one of them.
+fn joined([re, im]: [Vec<[f64; 2]>; 2]) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    for [x, re] in re {
+        let other = im.iter().find(|[own, _]| *own == x);
+        points.extend(other.map(|[_, im]| [x, re, *im]));
+    }
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
+}
+
+/// The measured points, the simulated ones and the simulated curve.
+fn curves(parts: [&SolvedSeries; 2]) -> [Vec<Point>; 3] {
+    let column = |at: usize| {
+        joined(parts.map(|own| own.points.iter().map(|point| [point[0], point[at]]).collect()))
+    };
+    [column(1), column(2), joined(parts.map(|own| own.curve.clone()))]
+}
+
+fn series(
+    name: &str,
+    points: &[Point],
+    (x, y): (fn(&Point) -> f64, fn(&Point) -> f64),
+    (mark, colour): (Mark, usize),
+) -> Series {
+    Series {
+        name: name.to_owned(),
+        x: points.iter().map(x).collect(),
+        y: points.iter().map(y).collect(),
+        mark,
+        colour,
+    }
 }
 
 fn plane(real: &SolvedSeries, imaginary: &SolvedSeries) -> Figure {
-    let series = |name: &str, [re, im]: [Vec<[f64; 2]>; 2], mark, colour| {
-        // By the frequency: a point may lack one of its parts.
-        let mut points: Vec<(f64, f64, f64)> = Vec::new();
-        for [x, re] in &re {
-            let other = im.iter().find(|[own, _]| own == x);
-            points.extend(other.map(|[_, im]| (*x, *re, -im)));
-        }
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Series {
-            name: name.to_owned(),
-            x: points.iter().map(|point| point.1).collect(),
-            y: points.iter().map(|point| point.2).collect(),
-            mark,
-            colour,
-        }
-    };
-    let measured =
-        [real, imaginary].map(|own| own.points.iter().map(|point| [point[0], point[1]]).collect());
-    let simulated = [real, imaginary].map(|own| own.curve.clone());
+    let [measured, _, simulated] = curves([real, imaginary]);
     let [x, y] = [("real part", real), ("\u{2212}imaginary part", imaginary)]
         .map(|(label, own)| Axis::linear(label, &own.y[1]));
+    let parts: (fn(&Point) -> f64, fn(&Point) -> f64) = (|own| own[1], |own| -own[2]);
+    let dots = of_points(real.points.len());
     let all = vec![
-        series("simulated", simulated, Mark::Line, 1),
-        series("measured", measured, of_points(real.points.len()), 0),
+        series("simulated", &simulated, parts, (Mark::Line, 1)),
+        series("measured", &measured, parts, (dots, 0)),
     ];
     Figure::plane(x, y, all)
+}
+
+fn magnitude(point: &Point) -> f64 {
+    elementary::hypot(point[1], point[2])
+}
+
+/// Angles in degrees, without jumps from one frequency to the next.
+fn phases(points: &[Point]) -> Vec<f64> {
+    let mut all: Vec<f64> = Vec::with_capacity(points.len());
+    for [_, re, im] in points {
+        let phase = elementary::atan2(*im, *re) * 180.0 / PI;
+        let rounds = all.last().map_or(0.0, |last| ((last - phase) / 360.0).round());
+        all.push(phase + 360.0 * rounds);
+    }
+    all
+}
+
+fn bode(real: &SolvedSeries, imaginary: &SolvedSeries) -> Figure {
+    let [measured, at_points, simulated] = curves([real, imaginary]);
+    let dots = (of_points(real.points.len()), 0);
+    let over = |points: &[Point], y: Vec<f64>, (mark, colour)| Series {
+        y,
+        ..series("", points, (|own| own[0], |own| own[0]), (mark, colour))
+    };
+    let of_magnitude: (fn(&Point) -> f64, fn(&Point) -> f64) = (|own| own[0], magnitude);
+    let magnitudes = vec![
+        series("simulated", &simulated, of_magnitude, (Mark::Line, 1)),
+        series("measured", &measured, of_magnitude, dots),
+    ];
+    let turned = vec![
+        over(&simulated, phases(&simulated), (Mark::Line, 1)),
+        over(&measured, phases(&measured), dots),
+    ];
+    // In per cent of the magnitude, by the parts.
+    let left = |part: usize| {
+        let pairs = measured.iter().zip(&at_points);
+        pairs
+            .map(|(own, simulated)| 100.0 * (own[part] - simulated[part]) / magnitude(own))
+            .collect()
+    };
+    let named = |name: &str, own: Series| Series { name: name.to_owned(), ..own };
+    let residuals = vec![
+        named("real part", over(&measured, left(1), (Mark::Dots, 0))),
+        named("imaginary part", over(&measured, left(2), (Mark::Dots, 2))),
+    ];
+    let panel = |y, height, zero_line, series| Panel {
+        x: Axis::logarithmic("frequency", "Hz"),
+        y,
+        height,
+        zero_line,
+        series,
+    };
+    Figure {
+        title: String::new(),
+        panels: vec![
+            panel(Axis::logarithmic("magnitude", &real.y[1]), 160.0, false, magnitudes),
+            panel(Axis::linear("phase", "deg"), 130.0, false, turned),
+            panel(Axis::linear("residual", "%"), 100.0, true, residuals),
+        ],
+    }
 }

@@ -6,7 +6,7 @@ use super::parts::{explained, figure, one_panel, series};
 use super::view::{self, CurvePoint, View};
 use crate::Descriptions;
 use crate::plot::{Axis, Figure, MANY, Mark, Panel, Series, of_points, of_residuals};
-use crate::problem::{Band, SolvedSeries, SolvedState};
+use crate::problem::{Band, SolvedSeries, SolvedState, SpectrumFigures};
 use maud::{Markup, html};
 use std::path::Path;
 
@@ -51,7 +51,7 @@ pub(super) fn others(view: &View) -> Option<Section> {
     let descriptions = &view.solution.subject.descriptions;
     let content = html! {
         div.figures {
-            @for (name, drawing) in &planes { (in_plane(name, drawing)) }
+            @for own in &planes { (in_plane(own)) }
             @for (series, curve, kind) in others { (one(series, (curve, kind), descriptions)) }
             @for band in &view.unmeasured { (unmeasured(band, descriptions)) }
             @for own in states { (state(own, descriptions)) }
@@ -60,12 +60,19 @@ pub(super) fn others(view: &View) -> Option<Section> {
     Some(Section { id: "series", heading: "Further series", content, wide: true })
 }
 
-/// A spectrum in the plane of complex numbers.
-fn in_plane(name: &str, drawing: &Figure) -> Markup {
-    let name = if name.is_empty() { "spectrum" } else { name };
+/// A spectrum in the plane of complex numbers, and over the frequency.
+fn in_plane(own: &SpectrumFigures<'_>) -> Markup {
+    let name = if own.name.is_empty() { "spectrum" } else { own.name };
     let label = format!("{name}: the measured spectrum and the simulated one in the complex plane");
     let caption = html! { strong { (name) } ": Nyquist plot, both axes to the same scale." };
-    figure(drawing, &label, &caption)
+    let over = format!("{name}: magnitude, phase and residuals over the frequency");
+    let below = html! {
+        strong { (name) } ": Bode plot; residuals in per cent of the magnitude."
+    };
+    html! {
+        (figure(&own.plane, &label, &caption))
+        (figure(&own.bode, &over, &below))
+    }
 }
 
 fn name(series: &SolvedSeries, kind: &str) -> String {

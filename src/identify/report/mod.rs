@@ -8,6 +8,7 @@
 //! out. Each statistic is explained in a line with its threshold, and leads to the chapter of the guide
 //! on reading reports, which is part of the page.
 
+mod contributions;
 mod convergence;
 mod explanations;
 mod fit;
@@ -70,6 +71,7 @@ fn body(view: &View) -> Markup {
         residuals::section(view),
         minima::section(view),
         pairs::section(view),
+        contributions::section(view),
         profiles::section(view),
         sensitivity::section(view),
         front::section(view),

@@ -188,8 +188,8 @@ fn noise_of_states<'n>(
     uncertain.states.iter().map(of).collect()
 }
 
-/// The names of the variables of a filter, by the states and outputs that they belong to: they stand in
-/// messages of simulations that fail.
+/// The names of the variables of a filter, by the states and outputs that they belong to: messages of
+/// simulations that fail show them.
 struct Names {
     states: Vec<String>,
     outputs: Vec<String>,

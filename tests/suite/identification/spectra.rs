@@ -346,3 +346,71 @@ fn a_spectrum_and_a_load_step_determine_more_than_either() {
         assert_near(parameter(&result, name)[0], value, 1e-5);
     }
 }
+
+/// Two parts of a line, y = a + b x: near 0, which knows a, and far from it. By the inverses of the 2 × 2
+/// matrices of information, by hand.
+#[test]
+fn what_each_experiment_contributes_follows_from_its_information() {
+    let line = "model Line\n  parameter Real a = 1, b = 1;\n  input Real x;\n  Real y = a + b*x;\nend Line;\n";
+    let experiment = |name: &str| {
+        format!(
+            "[[experiment]]\nname = \"{name}\"\ndata = \"{name}.csv\"\nx = \"x\"\n\
+             outputs.y = {{ column = \"y\", sigma = 0.1 }}\n"
+        )
+    };
+    let problem = "model = \"Line\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+        a = { min = 0.1, max = 5 }\nb = { min = 0.1, max = 5 }\n"
+        .to_owned()
+        + &experiment("low")
+        + &experiment("high");
+    let files = [
+        ("M.mo", line),
+        ("p.toml", problem.as_str()),
+        ("low.csv", "x,y\n0,1.05\n1,2.95\n"),
+        ("high.csv", "x,y\n10,20.95\n11,23.05\n"),
+    ];
+    let (result, _) = solved(&files);
+    let all = result["inferred"]["contributions"].as_array().unwrap();
+    let numbers = |place: usize, key: &str| -> Vec<f64> {
+        all[place][key].as_array().unwrap().iter().map(|own| own.as_f64().unwrap()).collect()
+    };
+    let [a, b] = [222.0_f64 / 404.0, 4.0_f64 / 404.0];
+    for (place, shares, without) in [
+        (0, [89_284.0 / 89_688.0, 0.5], [221.0 / a, 2.0 / b].map(f64::sqrt)),
+        (1, [404.0 / 89_688.0, 0.5], [1.0 / a, 2.0 / b].map(f64::sqrt)),
+    ] {
+        for k in 0..2 {
+            assert_near(numbers(place, "shares")[k], shares[k], 1e-6);
+            assert_near(numbers(place, "without")[k], without[k], 1e-6);
+        }
+    }
+    let here = crate::support::program::folder(&files);
+    let (code, out, error) =
+        crate::support::program::gapi(&here, &["identify", "p.toml", "--plain", "--design"]);
+    assert_eq!(code, 0, "{error}");
+    for words in [
+        "a is known from low alone.",
+        "b: 50 % of what the data say from low, 50 % from high; without low its interval would be 14 \
+         times as wide.",
+    ] {
+        assert!(out.contains(words), "{out}");
+    }
+}
+
+/// A spectrum is measured with both parts at a frequency: more of it narrows the interval of what one part
+/// alone shows.
+#[test]
+fn the_next_frequency_counts_both_parts() {
+    let cell = "model Cell\n  parameter Real R = 0.1, C = 1;\n  input Real i(start = 0);\n  \
+        Real v(start = 0, fixed = true);\nequation\n  C*der(v) = i - v/R;\nend Cell;\n";
+    let data =
+        table(&frequencies(0.01, 0.1, 8), |s| 0.1 / (1.0 + 0.1 * s) + Number::new(1e-4, 0.0));
+    let problem = "model = \"Cell\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+        R = { min = 0.01, max = 1 }\nC = { min = 0.1, max = 10 }\n[design]\nrange = [0.01, 100]\n\
+        [[experiment]]\ndata = \"d.csv\"\nspectrum = { input = \"i\", output = \"v\" }\n\
+        outputs = { real = { column = \"re\", sigma = 1e-3 }, imaginary = { column = \"im\", sigma = 1e-3 } }\n";
+    let (_, text) = solved(&[("M.mo", cell), ("d.csv", &data), ("p.toml", problem)]);
+    // |dZ/dC| = ωR²/(1 + (ωRC)²) is largest at 1/(2πRC) = 1.6 Hz.
+    assert!(text.contains("points of the spectrum between frequency = 1"), "{text}");
+    assert!(text.contains("would narrow the 95 % interval of C"), "{text}");
+}

@@ -94,8 +94,8 @@ pub struct Plan {
 struct Candidate {
     curve: Curve,
     /// Gradients by the relative change of the parameters, by the standard deviation of a
-    /// measurement, point by point.
-    gradients: Vec<Vec<f64>>,
+    /// measurement, point by point: those of all that is measured there.
+    gradients: Vec<Vec<Vec<f64>>>,
 }
 
 /// The present information, and what is compared with it.
@@ -184,21 +184,41 @@ fn candidates(
                 fault!(BAD_OPTION, "the measurement errors of `{}` are unknown", curve.y[0])
             })?;
             let parts = gradient.iter().zip(&search.units).map(|(g, unit)| g * unit / noise);
-            gradients.push(parts.collect::<Vec<f64>>());
+            gradients.push(vec![parts.collect::<Vec<f64>>()]);
         }
         candidates.push(Candidate { curve, gradients });
     }
-    Ok(candidates)
+    Ok(with_whole_spectra(candidates))
+}
+
+/// An instrument measures both parts of a spectrum at a frequency: they are one candidate.
+fn with_whole_spectra(candidates: Vec<Candidate>) -> Vec<Candidate> {
+    let mut all: Vec<Candidate> = Vec::new();
+    for own in candidates {
+        let is_part = |last: &&mut Candidate| {
+            own.curve.is_over_frequency && last.curve.experiment == own.curve.experiment
+        };
+        match all.last_mut().filter(is_part) {
+            Some(last) => {
+                "the spectrum".clone_into(&mut last.curve.y[0]);
+                last.gradients.iter_mut().zip(own.gradients).for_each(|(a, b)| a.extend(b));
+            }
+            None => all.push(own),
+        }
+    }
+    all
 }
 
 impl Candidate {
-    /// The gradient at a place on the grid, linear between its points.
-    fn gradient(&self, place: f64) -> Vec<f64> {
+    /// Adds the information of a point at a place on the grid, whose gradients are linear between points.
+    fn add(&self, matrix: &mut DMatrix<f64>, place: f64) {
         let low = (place.floor() as usize).min(self.gradients.len() - 1);
         let high = (low + 1).min(self.gradients.len() - 1);
         let part = place - low as f64;
-        let pairs = self.gradients[low].iter().zip(&self.gradients[high]);
-        pairs.map(|(a, b)| a + part * (b - a)).collect()
+        for (low, high) in self.gradients[low].iter().zip(&self.gradients[high]) {
+            let pairs = low.iter().zip(high);
+            add_point(matrix, &pairs.map(|(a, b)| a + part * (b - a)).collect::<Vec<f64>>());
+        }
     }
 
     fn plan(&self, [low, high]: [usize; 2], points: usize) -> Plan {
@@ -263,7 +283,7 @@ impl<'a> DesignSearch<'a> {
         let mut matrix = self.present.clone();
         for k in 0..self.points {
             let part = if self.points == 1 { 0.5 } else { k as f64 / (self.points - 1) as f64 };
-            add_point(&mut matrix, &candidate.gradient(low as f64 + part * (high - low) as f64));
+            candidate.add(&mut matrix, low as f64 + part * (high - low) as f64);
         }
         matrix
     }
@@ -307,7 +327,8 @@ impl<'a> DesignSearch<'a> {
             .collect();
         let matrix = |chosen: &[(usize, usize)]| {
             let mut matrix = self.present.clone();
-            chosen.iter().for_each(|(c, k)| add_point(&mut matrix, &candidates[*c].gradients[*k]));
+            let rows = chosen.iter().flat_map(|(c, k)| &candidates[*c].gradients[*k]);
+            rows.for_each(|row| add_point(&mut matrix, row));
             matrix
         };
         let loss = |chosen: &[(usize, usize)]| {
@@ -437,7 +458,7 @@ impl NextMeasurement {
     /// About proposals for all parameters.
     fn together(&self, proposal: &Proposal) -> Option<String> {
         let what = places(&proposal.plans, self.several());
-        let changes = || {
+        let narrowed = || {
             let worst = (0..self.parameters.len())
                 .filter(|&k| {
                     self.now[k].is_none_or(|now| {
@@ -446,12 +467,10 @@ impl NextMeasurement {
                 })
                 .map(|k| self.change(proposal, k));
             let all: Vec<String> = worst.collect();
-            if all.is_empty() {
-                "no interval to less than nine tenths".to_owned()
-            } else {
-                all.join(", ")
-            }
+            (!all.is_empty()).then(|| all.join(", "))
         };
+        let none = "no interval to less than nine tenths";
+        let changes = || narrowed().unwrap_or_else(|| none.to_owned());
         match (proposal.criterion.as_str(), proposal.volume) {
             ("D", Some(volume)) => Some(format!(
                 "For all parameters together (D-optimal): {what}: the volume of their confidence region shrinks to {} %.",
@@ -466,11 +485,15 @@ impl NextMeasurement {
             )),
             ("repeat", _) => {
                 let plan = proposal.plans.first()?;
+                let own = &plan.experiment;
+                let own = if own.is_empty() { "the experiment" } else { own };
+                let what = match narrowed() {
+                    Some(changes) => format!("the 95 % interval of {changes}"),
+                    None => none.to_owned(),
+                };
                 Some(format!(
-                    "Measuring all {} points of {} once more would narrow the 95 % interval of {}.",
-                    plan.points,
-                    if plan.experiment.is_empty() { "the experiment" } else { &plan.experiment },
-                    changes()
+                    "Measuring all {} points of {own} once more would narrow {what}.",
+                    plan.points
                 ))
             }
             _ => None,

@@ -1,6 +1,6 @@
 //! What inference has found, and its tables and sentences.
 
-use super::{Band, BandPoint, Bootstrap, Likelihood, NextMeasurement, Posterior};
+use super::{Band, BandPoint, Bootstrap, Contribution, Likelihood, NextMeasurement, Posterior};
 use crate::problem::{Finding, SolvedState};
 use crate::table::quoted;
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,9 @@ pub struct Inferred {
     /// The posterior.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub posterior: Option<Posterior>,
+    /// What each of several experiments contributes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contributions: Vec<Contribution>,
     /// States that a filter and a smoother have found.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub states: Vec<SolvedState>,
@@ -71,6 +74,11 @@ impl Inferred {
         bootstrap.chain(posterior).collect()
     }
 
+    /// What each experiment contributes, in words.
+    pub(crate) fn contributed(&self, parameters: &[String]) -> Vec<String> {
+        super::contributions::sentences(&self.contributions, parameters)
+    }
+
     /// The sentences of the report, with an empty line before each group.
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -82,6 +90,8 @@ impl Inferred {
             sentences.iter().for_each(|sentence| text += &format!("  {sentence}\n"));
         };
         if let Some(next) = &self.next_measurement {
+            let known = self.contributed(&next.parameters);
+            group("  What each experiment contributes\n", &known);
             group("  The next measurement\n", &next.sentences());
         }
         let bands: Vec<String> = self.bands.iter().filter_map(Band::sentence).collect();

@@ -10,6 +10,7 @@ mod bands;
 mod bootstrap;
 mod comparison;
 mod constraint;
+mod contributions;
 mod design;
 mod inferred;
 mod least_squares;
@@ -28,6 +29,7 @@ pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Re
 pub use comparison::{Compared, Comparison, Nested, compare};
 pub use constraint::Constraint;
 pub(crate) use constraint::PortableConstraint;
+pub use contributions::Contribution;
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
 pub use likelihood::{Likelihood, beside};
@@ -85,7 +87,9 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
         findings: prior_data::at_constraints(&run.problem, &best.values),
         ..Inferred::default()
     };
-    if requested.is_empty() {
+    let first = run.problem.series.first().map(|own| own.experiment.as_str());
+    let is_joint = run.problem.series.iter().any(|own| Some(own.experiment.as_str()) != first);
+    if requested.is_empty() && !is_joint {
         return Ok(found);
     }
     run.evaluation.show("intervals: derivatives at the best values");
@@ -99,6 +103,7 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
             return Ok(found);
         }
     };
+    found.contributions = contributions::contributions(&run.problem, &local);
     let mut parts = Made { run, refusals: Vec::new(), stopped: Vec::new() };
     if let Some(predict) = requested.predict.as_ref().filter(|_| requested.bands) {
         let make = |refusals: &mut Vec<String>| {

@@ -45,6 +45,8 @@ pub struct Curve {
     pub points: Vec<f64>,
     /// The measured series of this experiment and variable.
     pub series: Option<usize>,
+    /// Whether X is the frequency of a spectrum.
+    pub is_over_frequency: bool,
 }
 
 /// Curves and what simulates them, one after the other.
@@ -347,6 +349,7 @@ fn described(experiment: &Experiment, dense: &Experiment, first: usize) -> Vec<C
         x: [experiment.x_name.clone(), unit(&experiment.x_name)],
         points: observation.x.clone(),
         series: (k < measured).then_some(first + k),
+        is_over_frequency: is_over_frequency(experiment),
     };
     dense.observations.iter().enumerate().map(one).collect()
 }

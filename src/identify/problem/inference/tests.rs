@@ -43,6 +43,7 @@ impl Predict for Formulas {
             x: ["x".into(), "A".into()],
             points: points.clone(),
             series,
+            is_over_frequency: false,
         };
         let mut curves = vec![curve("y", Some(0))];
         let mut functions = vec![(self.measured, points.clone())];

@@ -59,13 +59,11 @@ pub(super) fn filtered(
     let place = file.places.at(&["noise"]);
     let more = match &file.filtering {
         Filtering::Smoothed(more) => {
-            let times = times(entry, rows, start, *more).at(Span::NONE).map_err(one)?;
-            let last = times.iter().copied().fold(experiment.settings.stop, f64::max);
-            experiment.settings.stop = last;
-            times
+            times(entry, rows, start, *more).at(Span::NONE).map_err(one)?
         }
         _ => Vec::new(),
     };
+    experiment.settings.stop = more.iter().copied().fold(experiment.settings.stop, f64::max);
     let purpose = match &file.filtering {
         Filtering::Smoothed(_) => Purpose::Smoothing(&more),
         Filtering::Ahead(name, ahead) if *name == experiment.name => Purpose::Ahead(ahead),
