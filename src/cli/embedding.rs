@@ -17,6 +17,7 @@
 //! ```
 
 use super::Cli;
+use super::lock::Lock;
 use super::options::{ALL_LIBRARIES, Colour, Global};
 use super::output::{Output, REPL_RESULTS};
 use super::world::SystemWorld;
@@ -106,6 +107,34 @@ impl Embedding {
         let output = Output::of(command, file, out, overwrite).map_err(io::Error::other)?;
         let world = SystemWorld::on_screen(screen, stop, output, self.threads)?;
         Ok(session::open(&self.global(), world))
+    }
+}
+
+/// The folder for the results of one task in a session that has many; other runs are kept out of it
+/// while this lives.
+#[derive(Debug)]
+pub struct ResultsFolder {
+    /// Where it lies, absolute.
+    pub path: PathBuf,
+    _lock: Lock,
+}
+
+impl ResultsFolder {
+    /// Makes the folder, which says that it holds the results of `command` on `input`.
+    ///
+    /// # Errors
+    ///
+    /// It holds the results of another problem and `overwrite` was not asked; it is in use, or
+    /// cannot be written.
+    pub fn claim(
+        (command, input): (&str, &Path),
+        folder: &Path,
+        overwrite: bool,
+    ) -> io::Result<ResultsFolder> {
+        let output = Output::of(command, input, Some(folder), overwrite);
+        let output = output.map_err(io::Error::other)?;
+        let lock = output.claim(None)?;
+        Ok(ResultsFolder { path: output.folder, _lock: lock })
     }
 }
 

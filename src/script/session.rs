@@ -19,6 +19,8 @@ use crate::diag::{Code, Diagnostic, Fault};
 use crate::name::Ident;
 use crate::source::{SourceMap, Span};
 use crate::value::Value;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Work that is done when the outermost script ends.
@@ -30,6 +32,8 @@ pub struct Session {
     pub world: Box<dyn World>,
     /// The text of all files read so far.
     pub sources: SourceMap,
+    /// Files in memory, by absolute paths: they take the place of those on the disk.
+    pub(super) given: BTreeMap<PathBuf, Vec<u8>>,
     /// Where translated models are kept from one process to the next, if they are.
     pub storage: Option<Arc<dyn Store>>,
     /// What it answers.
@@ -57,6 +61,7 @@ impl Session {
         Session {
             world,
             sources: SourceMap::default(),
+            given: BTreeMap::new(),
             storage: None,
             output: Output::default(),
             options: Options::default(),

@@ -58,6 +58,15 @@ impl Reported {
         Reported::new(&fault.at(Span::NONE), &SourceMap::default())
     }
 
+    /// What refuses the folder of results.
+    pub(crate) fn refusal(error: &std::io::Error) -> Reported {
+        let code = gapilib::internals::registry::BAD_OPTION;
+        let text = error.to_string();
+        let (message, help) = text.split_once("\n = help: ").unwrap_or((&text, ""));
+        let fault = Fault::new(code, message.to_owned());
+        Reported::fault(if help.is_empty() { fault } else { fault.help(help.to_owned()) })
+    }
+
     pub(crate) fn is_error(&self) -> bool {
         self.severity == "error"
     }

@@ -2,7 +2,7 @@
 
 use crate::errors::{Reported, raised, raised_fault};
 use crate::model::{Simulation, SimulationResult, ended, finished};
-use crate::session::{Answer, checked};
+use crate::session::{Answer, Session, checked};
 use crate::worker::{Worker, written};
 use gapilib::Fault;
 use gapilib::Session as Engine;
@@ -26,6 +26,8 @@ use std::sync::Arc;
 pub(crate) struct Fmu {
     worker: Arc<Worker>,
     unit: Arc<Imported>,
+    path: PathBuf,
+    threads: Option<usize>,
 }
 
 /// What units offer, as Python says it.
@@ -77,17 +79,20 @@ impl Fmu {
     /// The unit of a file, that the session runs.
     pub(crate) fn open(
         py: Python<'_>,
-        worker: Arc<Worker>,
+        session: &Session,
         path: PathBuf,
         is_co_simulation: bool,
     ) -> PyResult<Fmu> {
+        let (worker, threads) = (session.worker.clone(), session.threads);
+        let path = std::path::absolute(path)?;
+        let file = path.clone();
         let method = is_co_simulation.then_some(CO_SIMULATION);
         let unit = worker.call(py, move |engine| {
-            engine.grant_input(&path);
-            imported::import(engine, &path, method)
+            engine.grant_input(&file);
+            imported::import(engine, &file, method)
         })?;
         let unit = unit.map_err(|fault| raised_fault(py, fault))?;
-        Ok(Fmu { worker, unit })
+        Ok(Fmu { worker, unit, path, threads })
     }
 
     fn model(
@@ -112,6 +117,7 @@ struct Request {
     options: SimulationOptions,
     parameters: Vec<(String, Value)>,
     inputs: Option<PathBuf>,
+    interpolation: Option<String>,
 }
 
 #[pymethods]
@@ -120,6 +126,18 @@ impl Fmu {
     #[getter]
     fn name(&self) -> &str {
         &self.unit.file
+    }
+
+    /// Where it lies, absolute.
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.path.clone()
+    }
+
+    /// The session that runs it.
+    #[getter]
+    fn session(&self) -> Session {
+        Session { worker: self.worker.clone(), threads: self.threads }
     }
 
     /// Its parameters: dicts with unit, min, max, tunable and top_level by their names.
@@ -141,9 +159,11 @@ impl Fmu {
     }
 
     /// Simulates it, with values for parameters and start values by their names (numbers, bools, strings,
-    /// literals of enumerations by their names), and inputs that follow the columns of a file. What is None is taken from its description.
+    /// literals of enumerations by their names), and inputs that follow the columns of a file; between its
+    /// rows they hold or are linear, as `interpolation` says. What is None is taken from its description.
     #[pyo3(signature = (parameters=None, *, start=None, stop=None, intervals=None, interval=None,
-        tolerance=None, method=None, variables=None, inputs=None))]
+        tolerance=None, method=None, variables=None, inputs=None,
+        interpolation=None))]
     #[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
     fn simulate(
         &self,
@@ -157,6 +177,7 @@ impl Fmu {
         method: Option<String>,
         variables: Option<Vec<String>>,
         inputs: Option<PathBuf>,
+        interpolation: Option<String>,
     ) -> PyResult<SimulationResult> {
         let options = SimulationOptions {
             start,
@@ -168,7 +189,7 @@ impl Fmu {
             ..SimulationOptions::default()
         };
         let parameters = parameters.into_iter().flatten().collect();
-        let request = Request { options, parameters, inputs };
+        let request = Request { options, parameters, inputs, interpolation };
         let unit = self.unit.clone();
         let (answer, errors) =
             self.worker.call_quietly(py, move |engine| simulated(engine, &unit, request))?;
@@ -195,7 +216,8 @@ fn simulated(engine: &mut Engine, unit: &Arc<Imported>, request: Request) -> Sim
         None => Vec::new(),
         Some(path) => {
             engine.grant_input(path);
-            let followed = problem::inputs_of(engine, unit, path).map_err(|error| vec![error]);
+            let given = (path.as_path(), request.interpolation.as_deref());
+            let followed = problem::inputs_of(engine, unit, given).map_err(|error| vec![error]);
             checked(engine, followed).map_err(|errors| (errors, None))?.samples
         }
     };

@@ -1,7 +1,7 @@
 //! Translated models and the results of their simulations.
 
 use crate::errors::{Reported, raised, raised_fault, reported};
-use crate::session::checked;
+use crate::session::{Session, checked};
 use crate::simulator::{Points, Simulator};
 use crate::worker::{Worker, written};
 use gapilib::Fault;
@@ -55,6 +55,12 @@ impl Model {
     #[getter]
     fn name(&self) -> &str {
         &self.translated.problem
+    }
+
+    /// The session that has made it.
+    #[getter]
+    fn session(&self) -> Session {
+        Session { worker: self.worker.clone(), threads: self.threads }
     }
 
     /// Its parameters: dicts with unit, min, max, tunable and top_level by their names.
@@ -404,11 +410,36 @@ impl SimulationResult {
         Ok(frame)
     }
 
-    /// Writes all variables into a file; its extension, .mat or .csv, selects the format.
-    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+    /// A table of Arrow: time, and all variables or those of `names`. Units and descriptions are in the
+    /// metadata of the fields.
+    #[pyo3(signature = (names=None))]
+    fn to_arrow<'py>(
+        slf: &Bound<'py, Self>,
+        names: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("gapilib._export")?.call_method1("arrow", (slf, names))
+    }
+
+    /// A dataset of xarray over time: all variables, or those of `names`, with their units.
+    #[pyo3(signature = (names=None))]
+    fn to_xarray<'py>(
+        slf: &Bound<'py, Self>,
+        names: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("gapilib._export")?.call_method1("xarray", (slf, names))
+    }
+
+    /// Writes all variables into a file; its extension selects the format: .mat or .csv, with pyarrow
+    /// also .parquet and .feather, with xarray also .nc.
+    fn write(slf: &Bound<'_, Self>, path: PathBuf) -> PyResult<()> {
+        let (py, this) = (slf.py(), slf.get());
+        let export = py.import("gapilib._export")?;
+        if export.call_method1("is_written", (slf, path.to_string_lossy()))?.extract()? {
+            return Ok(());
+        }
         let format = results::format_of_file(&path.to_string_lossy());
         let format = format.map_err(|fault| raised_fault(py, fault))?;
-        let bytes = format.write(&self.table).map_err(|fault| raised_fault(py, fault))?;
+        let bytes = format.write(&this.table).map_err(|fault| raised_fault(py, fault))?;
         Ok(py.detach(|| std::fs::write(path, bytes))?)
     }
 

@@ -27,7 +27,7 @@ pub(crate) type Answer<T> = Result<T, Vec<Reported>>;
 #[pyclass(frozen, module = "gapilib")]
 pub(crate) struct Session {
     pub(crate) worker: Arc<Worker>,
-    threads: Option<usize>,
+    pub(crate) threads: Option<usize>,
 }
 
 /// Makes errors of the engine ready for Python.
@@ -198,7 +198,7 @@ impl Session {
     /// `allow_external=True`; with `co_simulation` it integrates itself.
     #[pyo3(signature = (path, *, co_simulation=false))]
     fn fmu(slf: &Bound<'_, Self>, path: PathBuf, co_simulation: bool) -> PyResult<Fmu> {
-        Fmu::open(slf.py(), slf.get().worker.clone(), path, co_simulation)
+        Fmu::open(slf.py(), slf.get(), path, co_simulation)
     }
 
     /// The declarations of a command, or of a loaded class; None for what is neither.

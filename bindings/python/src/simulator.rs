@@ -87,6 +87,7 @@ impl Simulator {
             second_attempt: true,
             x_name: points.x_name.clone(),
             observations: points.outputs.iter().map(observe).collect(),
+            deviations: 0,
             parameters: parameters.iter().cloned().enumerate().collect(),
         };
         let make = || ModelSimulator::new(std::slice::from_ref(&experiment)).map(Mutex::new);
@@ -260,6 +261,12 @@ impl Simulator {
     #[getter]
     fn outputs(&self) -> Vec<String> {
         self.points.outputs.clone()
+    }
+
+    /// Whether there is one output, without a dimension of its own in what is simulated.
+    #[getter]
+    fn is_single(&self) -> bool {
+        self.points.is_single
     }
 
     /// The points.

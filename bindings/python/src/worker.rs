@@ -105,6 +105,17 @@ impl Worker {
         py: Python<'_>,
         job: impl FnOnce(&mut Session) -> T + Send + 'static,
     ) -> PyResult<(T, String)> {
+        let shown = Shown { prints: true, progress: self.progress.as_ref() };
+        self.call_shown(py, &shown, job)
+    }
+
+    /// The same, of which this is shown.
+    pub(crate) fn call_shown<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        shown: &Shown<'_>,
+        job: impl FnOnce(&mut Session) -> T + Send + 'static,
+    ) -> PyResult<(T, String)> {
         let Some(link) = self.link.get() else {
             return Err(PyRuntimeError::new_err(format!(
                 "the session belongs to the process {}: make a session in each process, or start \
@@ -126,7 +137,7 @@ impl Worker {
         let gone = || PyRuntimeError::new_err("the session has ended after an internal error");
         link.work.send(work).map_err(|_| gone())?;
         let mut errors = String::new();
-        let interrupt = self.wait(py, &link.events, &mut errors);
+        let interrupt = self.wait(py, (&link.events, shown), &mut errors);
         let answer = answered.recv().map_err(|_| gone());
         interrupt.and(answer).map(|answer| (answer, errors))
     }
@@ -135,7 +146,7 @@ impl Worker {
     fn wait(
         &self,
         py: Python<'_>,
-        events: &Mutex<Receiver<Event>>,
+        (events, shown): (&Mutex<Receiver<Event>>, &Shown<'_>),
         errors: &mut String,
     ) -> PyResult<()> {
         let mut interrupt = Ok(());
@@ -145,7 +156,7 @@ impl Worker {
                 Some(event) => Ok(event),
                 None => py.detach(|| locked(events).recv_timeout(TICK)),
             };
-            let shown = match event {
+            let done = match event {
                 Ok(Event::Done) | Err(RecvTimeoutError::Disconnected) => return interrupt,
                 Ok(Event::Errors(text)) if text.starts_with("error") => {
                     errors.push_str(&text);
@@ -154,23 +165,34 @@ impl Worker {
                 Ok(Event::Output(text)) => {
                     let (text, other) = more(events, text);
                     next = other;
-                    written(py, "stdout", &text)
+                    shown.show(py, Event::Output(text))
                 }
-                Ok(event) => self.show(py, event),
+                Ok(event) => shown.show(py, event),
                 Err(RecvTimeoutError::Timeout) => py.check_signals(),
             };
-            if let Err(error) = shown.and_then(|()| py.check_signals()) {
+            if let Err(error) = done.and_then(|()| py.check_signals()) {
                 self.stop.store(true, Ordering::SeqCst);
                 interrupt = interrupt.and(Err(error));
             }
         }
     }
+}
 
+/// What a call shows while it works.
+pub(crate) struct Shown<'a> {
+    /// Whether what the session prints is printed.
+    pub prints: bool,
+    /// What is called with the progress.
+    pub progress: Option<&'a Py<PyAny>>,
+}
+
+impl Shown<'_> {
     fn show(&self, py: Python<'_>, event: Event) -> PyResult<()> {
         match event {
+            Event::Output(_) | Event::Errors(_) if !self.prints => Ok(()),
             Event::Output(text) => written(py, "stdout", &text),
             Event::Errors(text) => written(py, "stderr", &text),
-            Event::Progress(progress) => match &self.progress {
+            Event::Progress(progress) => match self.progress {
                 Some(call) => {
                     let best = progress.best.filter(|best| best.is_finite());
                     call.call1(py, (progress.label, progress.done, progress.total, best)).map(drop)

@@ -122,7 +122,7 @@ def test_several_experiments_and_one(tmp_path):
         ],
     }
     assert abs(gapilib.identify(problem, progress=False).parameters["k"] - 2.1) < 1e-5
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["Decay.mo", "results"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["Decay.mo"]
 
 
 @pytest.mark.parametrize(
@@ -156,8 +156,66 @@ def test_an_interrupted_problem_in_memory_is_resumed(tmp_path):
     def stop(label, done, total, best):
         raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt, match="with a folder `out`"):
         gapilib.identify(problem, progress=stop)
-    resumed = gapilib.identify(problem, progress=False, resume=True)
+    with pytest.raises(ValueError, match="name it with `out`"):
+        gapilib.identify(problem, resume=True)
+    with pytest.raises(KeyboardInterrupt, match="`resume=True` continues it"):
+        gapilib.identify(problem, progress=stop, out="run")
+    resumed = gapilib.identify(problem, resume=True, out="run")
     assert resumed.parameters == whole.parameters
     assert resumed.data["evaluations"] == whole.data["evaluations"]
+
+
+def arrow():
+    pyarrow = pytest.importorskip("pyarrow")
+    fields = [("time", pyarrow.float64()), pyarrow.field("x", pyarrow.float64(), metadata={"units": "mV"})]
+    return pyarrow.table([TIMES, 1e3 * VALUES], schema=pyarrow.schema(fields))
+
+
+def dataset():
+    xarray = pytest.importorskip("xarray")
+    return xarray.Dataset({"x": ("time", 1e3 * VALUES, {"units": "mV"})}, coords={"time": TIMES})
+
+
+def parquet():
+    arrow()
+    import pyarrow.parquet
+
+    pyarrow.parquet.write_table(arrow(), "data.parquet")
+    return "data.parquet"
+
+
+def netcdf():
+    pytest.importorskip("netCDF4")
+    dataset().to_netcdf("data.nc")
+    return "data.nc"
+
+
+@pytest.mark.parametrize("make", [arrow, dataset, parquet, netcdf])
+def test_data_of_other_packages(tmp_path, make):
+    found = solution(tmp_path, make())
+    np.testing.assert_allclose([found.parameters["k"], found.parameters["a"]], [2.1, 1.3], rtol=5e-3)
+
+
+@pytest.mark.parametrize("name", ["result.parquet", "result.feather", "result.nc"])
+def test_results_are_written_and_read_as_data(tmp_path, name):
+    pytest.importorskip("netCDF4" if name.endswith(".nc") else "pyarrow")
+    session = gapilib.Session(cache=False)
+    session.load_text(MODEL)
+    result = session.model("Decay").simulate({"k": 2.1, "a": 1.3}, tolerance=1e-9, intervals=20)
+    result.write(name)
+    found = solution(tmp_path, name)
+    np.testing.assert_allclose(list(found.parameters.values()), [2.1, 1.3], rtol=1e-5)
+
+
+def test_tables_and_datasets_have_names_and_units():
+    session = gapilib.Session(cache=False)
+    session.load_text(MODEL)
+    result = session.model("Decay").simulate()
+    table = pytest.importorskip("pyarrow") and result.to_arrow(["x"])
+    assert table.column_names == ["time", "x"] and table.schema.field("x").metadata[b"units"] == b"V"
+    np.testing.assert_array_equal(table["x"].to_numpy(), result["x"])
+    whole = pytest.importorskip("xarray") and result.to_xarray()
+    np.testing.assert_array_equal(whole["x"], result["x"])
+    assert whole["x"].attrs["units"] == "V" and whole["time"].attrs["units"] == "s"

@@ -41,8 +41,13 @@ def problem(tmp_path):
     }
 
 
-def test_a_problem_as_a_dict(problem, capsys):
-    solution = gapilib.identify(problem, progress=False)
+def test_a_problem_as_a_dict(problem, capsys, own_folder):
+    files = sorted(own_folder.rglob("*"))
+    solution = gapilib.identify(problem)
+    # Nothing is written or printed unasked.
+    assert sorted(own_folder.rglob("*")) == files and solution.path is None
+    printed = capsys.readouterr()
+    assert (printed.out, printed.err) == ("", "")
     np.testing.assert_allclose([solution.parameters["k"], solution.parameters["a"]], [2.1, 1.3], rtol=5e-3)
     assert solution.verdicts == {"k": "identifiable", "a": "identifiable"}
     covariance = solution.covariance
@@ -55,7 +60,7 @@ def test_a_problem_as_a_dict(problem, capsys):
     variance = solution.fitness / 18
     np.testing.assert_allclose(covariance, variance * np.linalg.inv(jacobian.T @ jacobian), rtol=1e-3)
     assert "<html" in solution.html and "iframe" in solution._repr_html_()
-    assert solution.text in capsys.readouterr().out
+    assert gapilib.identify(problem, verbose=True).text in capsys.readouterr().out
     pandas = pytest.importorskip("pandas")
     table = solution.table()
     assert isinstance(table, pandas.DataFrame) and table.loc["k", "low"] < k < table.loc["k", "high"]

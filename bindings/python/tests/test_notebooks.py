@@ -20,6 +20,7 @@ NOTEBOOKS = [
     ("pypesto", ["pypesto", "matplotlib"], 0.02),
     ("posterior", ["emcee", "arviz", "matplotlib"], 0.15),
     ("pymc", ["pymc", "arviz", "matplotlib"], 0.15),
+    ("gradient_descent", ["jax", "matplotlib"], 1e-3),
 ]
 
 

@@ -35,8 +35,16 @@ impl Session {
         self.world.exists(path) && self.world.permits(path, Access::Read).is_ok()
     }
 
+    /// Gives the data or the problem of a program that embeds this one as a file in memory.
+    pub fn give(&mut self, path: &Path, bytes: Vec<u8>) {
+        self.given.insert(self.world.absolute(path), bytes);
+    }
+
     /// The bytes of a file that a script names.
     pub fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, Fault> {
+        if let Some(given) = self.given.get(&self.world.absolute(path)) {
+            return Ok(given.clone());
+        }
         let Some(found) = self.find_current(path)? else {
             return Err(self.missing_file(path));
         };

@@ -16,14 +16,18 @@ import pathlib as _pathlib
 
 from . import ga
 from ._gapilib import Fmu, GapilibError, Model, Session, SimulationResult, Simulator, __version__
+from ._problem import Experiment, Parameter, Problem
 from ._run import run
 from ._solution import Figure, Solution, identify
 
 __all__ = [
+    "Experiment",
     "Figure",
     "Fmu",
     "GapilibError",
     "Model",
+    "Parameter",
+    "Problem",
     "Session",
     "SimulationResult",
     "Simulator",

@@ -1,11 +1,9 @@
 """Measured data that a problem holds itself, as files: what `gapi identify` reads."""
 
-import contextlib
 import csv
-import hashlib
 import io
 import os
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Tuple
 
 import numpy as np
 
@@ -16,20 +14,13 @@ def is_file(data: Any) -> bool:
 
 
 def text_of(data: Any) -> str:
-    """A data frame of pandas, or a dict of columns, as CSV.
+    """A data frame of pandas or polars, a table of Arrow, a dataset of xarray or a dict of columns, as CSV.
 
     An index that has a name, or holds times, is a column; so are dates, in seconds from the first one.
     Units are those of pint, a second level of the headings, ``frame.attrs["units"]``, or part of a heading
     as in ``U [mV]``. What is missing in the frame is missing in the file.
     """
-    if hasattr(data, "columns") and hasattr(data, "to_dict"):
-        columns, units = _of_frame(data)
-    elif isinstance(data, Mapping):
-        columns, units = {str(name): np.asarray(values) for name, values in data.items()}, {}
-    else:
-        raise TypeError(
-            f"the data of an experiment are a file, a data frame or a dict of columns, not {type(data).__name__}"
-        )
+    columns, units = _columns(data)
     lengths = {name: len(values) if values.ndim == 1 else None for name, values in columns.items()}
     if len(set(lengths.values())) != 1 or None in lengths.values():
         raise ValueError(f"the columns of the data must be vectors of one length, but these have {lengths}")
@@ -38,6 +29,80 @@ def text_of(data: Any) -> str:
     writer.writerow([f"{name} [{units[name]}]" if units.get(name) else name for name in columns])
     writer.writerows(zip(*[_cells(name, values) for name, values in columns.items()]))
     return file.getvalue()
+
+
+def of_other_package(data: Any) -> bool:
+    """Whether a file is one that another package reads."""
+    return os.path.splitext(os.fspath(data))[1].lower() in _READERS
+
+
+def read(path: str) -> Any:
+    """What a file of Parquet, Feather or NetCDF holds."""
+    return _READERS[os.path.splitext(path)[1].lower()](path)
+
+
+def _parquet(path: str) -> Any:
+    import pyarrow.parquet
+
+    return pyarrow.parquet.read_table(path)
+
+
+def _feather(path: str) -> Any:
+    import pyarrow.feather
+
+    return pyarrow.feather.read_table(path)
+
+
+def _netcdf(path: str) -> Any:
+    import xarray
+
+    with xarray.open_dataset(path) as dataset:
+        return dataset.load()
+
+
+_READERS: Dict[str, Callable[[str], Any]] = {
+    ".parquet": _parquet,
+    ".feather": _feather,
+    ".arrow": _feather,
+    ".nc": _netcdf,
+}
+
+
+def _columns(data: Any) -> Tuple[Dict[str, np.ndarray], Dict[str, str]]:
+    """The columns of data in memory and their units, by their names."""
+    units: Dict[str, str] = {}
+    if hasattr(data, "data_vars") and hasattr(data, "to_dataframe"):
+        columns = {str(name): np.asarray(data[name]) for name in [*data.coords, *data.data_vars]}
+        own = {str(name): data[name].attrs.get("units") for name in [*data.coords, *data.data_vars]}
+        units = {name: str(unit) for name, unit in own.items() if unit}
+    elif hasattr(data, "column_names") and hasattr(data, "schema"):
+        # A table of Arrow; units are in the metadata of its fields.
+        columns = {str(name): data.column(name).to_numpy() for name in data.column_names}
+        for field in data.schema:
+            unit = (field.metadata or {}).get(b"units")
+            if unit:
+                units[str(field.name)] = unit.decode()
+    elif hasattr(data, "iter_columns") and hasattr(data, "to_dict"):
+        columns = {str(name): data[name].to_numpy() for name in data.columns}
+    elif hasattr(data, "columns") and hasattr(data, "to_dict"):
+        return _of_frame(data)
+    elif isinstance(data, Mapping):
+        columns = {str(name): np.asarray(values) for name, values in data.items()}
+    else:
+        raise TypeError(
+            "the data of an experiment are a file, a data frame, a table of Arrow, a dataset of xarray or a "
+            f"dict of columns, not {type(data).__name__}"
+        )
+    return {name: _since_first(values, name, units) for name, values in columns.items()}, units
+
+
+def _since_first(values: np.ndarray, name: str, units: Dict[str, str]) -> np.ndarray:
+    """Dates and durations of NumPy in seconds, dates from the first one."""
+    if values.dtype.kind not in "mM":
+        return values
+    units[name] = "s"
+    durations = values - values[~np.isnat(values)].min() if values.dtype.kind == "M" else values
+    return durations / np.timedelta64(1, "s")
 
 
 def _of_frame(frame: Any) -> Tuple[Dict[str, np.ndarray], Dict[str, str]]:
@@ -92,40 +157,3 @@ def _cell(name: str, value: Any) -> str:
         return ""
     # All digits; whole numbers of any size as they are.
     return str(value) if isinstance(value, int) else repr(number)
-
-
-def with_files(problem: Mapping[str, Any], folder: Any) -> Tuple[Dict[str, Any], List[str]]:
-    """A problem whose data are in files in `folder`, and these files. They are the caller's to remove.
-
-    They are named after their content: a problem with the same data is the same one, and can be resumed.
-    """
-    given: Dict[str, Any] = dict(problem)
-    made: List[str] = []
-    experiments: Any = given.get("experiment")
-    if experiments is None:
-        return given, made
-    changed: List[Any] = []
-    try:
-        for one in [experiments] if isinstance(experiments, Mapping) else experiments:
-            data: Optional[Any] = one.get("data") if isinstance(one, Mapping) else None
-            if data is not None and not is_file(data):
-                content = text_of(data).encode()
-                name = f"problem-data-{hashlib.sha256(content).hexdigest()[:16]}.csv"
-                path = os.path.join(folder, name)
-                with open(path, "wb") as file:
-                    made.append(path)
-                    file.write(content)
-                one = {**one, "data": name}
-            changed.append(one)
-    except BaseException:
-        remove(made)
-        raise
-    given["experiment"] = changed
-    return given, made
-
-
-def remove(files: List[str]) -> None:
-    """Removes files; two experiments can have the same one."""
-    for path in files:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(path)

@@ -52,9 +52,13 @@ def run(
     progress: _Progress = None,
 ) -> Dict[str, Any]: ...
 def identify(
+    session: Session,
     problem: _Path,
+    out: _Path,
     *,
-    out: Optional[_Path] = None,
+    identity: _Path,
+    given: Mapping[str, bytes] = ...,
+    texts: Sequence[Tuple[str, str]] = ...,
     overwrite: bool = False,
     resume: bool = False,
     fresh: bool = False,
@@ -66,13 +70,9 @@ def identify(
     samples: int = 0,
     evaluations: Optional[int] = None,
     searches: Optional[int] = None,
-    libraries: Sequence[_Path] = ...,
-    threads: Optional[int] = None,
-    allow_read: Sequence[_Path] = ...,
-    allow_external: bool = False,
-    cache: bool = True,
+    verbose: bool = False,
     progress: _Progress = None,
-) -> Tuple[str, str, str, Dict[str, str]]: ...
+) -> Tuple[str, str, str, Dict[str, str], Dict[str, str], str, List[Path]]: ...
 
 @final
 class Session:
@@ -112,6 +112,8 @@ class Session:
 class Model:
     @property
     def name(self) -> str: ...
+    @property
+    def session(self) -> Session: ...
     @property
     def parameters(self) -> Dict[str, Dict[str, Any]]: ...
     @property
@@ -163,6 +165,10 @@ class Fmu:
     @property
     def name(self) -> str: ...
     @property
+    def path(self) -> Path: ...
+    @property
+    def session(self) -> Session: ...
+    @property
     def parameters(self) -> Dict[str, Dict[str, Any]]: ...
     @property
     def outputs(self) -> List[str]: ...
@@ -180,6 +186,7 @@ class Fmu:
         method: Optional[str] = None,
         variables: Optional[Sequence[str]] = None,
         inputs: Optional[_Path] = None,
+        interpolation: Optional[str] = None,
     ) -> SimulationResult: ...
 
 @final
@@ -200,6 +207,8 @@ class SimulationResult:
     def __iter__(self) -> Iterator[str]: ...
     def at(self, name: str, times: ArrayLike) -> NDArray[np.float64]: ...
     def to_pandas(self, names: Optional[Sequence[str]] = None) -> Any: ...
+    def to_arrow(self, names: Optional[Sequence[str]] = None) -> Any: ...
+    def to_xarray(self, names: Optional[Sequence[str]] = None) -> Any: ...
     def write(self, path: _Path) -> None: ...
 
 @final
@@ -208,6 +217,8 @@ class Simulator:
     def parameters(self) -> List[str]: ...
     @property
     def outputs(self) -> List[str]: ...
+    @property
+    def is_single(self) -> bool: ...
     @property
     def at(self) -> NDArray[np.float64]: ...
     def __call__(self, values: ArrayLike) -> NDArray[np.float64]: ...

@@ -70,7 +70,7 @@ use crate::identify::ranks::{Ranks, Traffic};
 use crate::models::imported::{note_messages, refuse_as_text};
 use crate::registry::BAD_OPTION;
 use crate::sim::TimeBudget;
-use crate::source::Span;
+use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
 pub use draft::{Draft, Question, draft};
@@ -155,6 +155,38 @@ pub fn solve(
     let file = file::read(source, &text)
         .map_err(|error| vec![refusal::with_unread_columns(session, path, &text, error)])?;
     solve_stated(session, path, file, options)
+}
+
+/// What is wrong with the problem in the file `path`, whose text is this, and what may change its result:
+/// what is said before a run.
+pub fn check(
+    session: &mut Session,
+    path: &Path,
+    (source, text): (SourceId, &str),
+) -> Vec<Diagnostic> {
+    let mut file = match file::read(source, text) {
+        Ok(file) => file,
+        Err(error) => return vec![refusal::with_unread_columns(session, path, text, error)],
+    };
+    let notes = match built_for(session, &mut file, path, &RunOptions::default()) {
+        Ok(built) => built.notes,
+        Err(errors) => return errors,
+    };
+    let place = file.places.at(&["experiment", "0", "data"]);
+    notes.into_iter().filter_map(|note| note.warning(place)).collect()
+}
+
+/// The names that an entry of a problem may have where its text has an entry that there is not.
+pub fn entries(text: &str) -> Vec<String> {
+    let Err(error) = file::read(SourceId::NONE, text) else { return Vec::new() };
+    let all = error.helps.iter().find_map(|help| help.strip_prefix(refusal::ENTRIES));
+    let names = all.into_iter().flat_map(|all| all.split('`').skip(1).step_by(2));
+    names.map(str::to_owned).collect()
+}
+
+/// The Modelica files and folders that the text of a problem names.
+pub fn model_files(text: &str) -> Vec<PathBuf> {
+    file::read(SourceId::NONE, text).map(|file| file.files).unwrap_or_default()
 }
 
 /// Solves the problem that a record `GAPILib.Problem` of a script holds.

@@ -70,7 +70,7 @@ pub struct Posterior {
     pub converged: bool,
     /// For each parameter.
     pub parameters: Vec<Sampled>,
-    /// Draws, evenly thinned, in `posterior.csv`.
+    /// Draws, evenly thinned, chain by chain, in `posterior.csv`.
     #[serde(skip)]
     pub rows: Vec<Vec<f64>>,
 }
@@ -297,9 +297,11 @@ fn summary(problem: &Problem, chains: &[&Drawn]) -> Posterior {
         let enough = |ess: Option<f64>| ess.is_some_and(|ess| ess >= ENOUGH);
         p.r_hat.is_some_and(|r| r <= CONVERGED) && enough(p.bulk_ess) && enough(p.tail_ess)
     };
-    let all: Vec<&Vec<f64>> = chains.iter().flat_map(|chain| &chain.draws).collect();
-    let every = all.len().div_ceil(ROWS).max(1);
-    let values = |u: &&Vec<f64>| {
+    let count: usize = chains.iter().map(|chain| chain.draws.len()).sum();
+    let every = count.div_ceil(ROWS).max(1);
+    // As many rows of each chain: their places say which chain they are of.
+    let thinned = chains.iter().flat_map(|chain| chain.draws.iter().step_by(every));
+    let values = |u: &Vec<f64>| {
         problem.parameters.iter().zip(u.iter()).map(|(free, u)| free.value(*u)).collect()
     };
     Posterior {
@@ -309,7 +311,7 @@ fn summary(problem: &Problem, chains: &[&Drawn]) -> Posterior {
             / chains.len() as f64,
         converged: parameters.iter().all(good),
         parameters,
-        rows: all.iter().step_by(every).map(values).collect(),
+        rows: thinned.map(values).collect(),
     }
 }
 
