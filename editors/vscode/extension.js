@@ -4,7 +4,12 @@ const path = require('node:path');
 const vscode = require('vscode');
 const { LanguageClient, TransportKind } = require('vscode-languageclient/node');
 
-const LANGUAGES = [{ language: 'modelica' }, { language: 'modelica-script' }];
+const LANGUAGES = [
+  { language: 'modelica' },
+  { language: 'modelica-script' },
+  // Problem files: those with experiments; of others the server says nothing.
+  { scheme: 'file', pattern: '**/*.toml' },
+];
 
 let client;
 
@@ -68,20 +73,31 @@ function inTerminal(title, cwd, args) {
   return terminal;
 }
 
+/** Runs gapi on a file in a task: a terminal closes with its program, a task keeps what it printed. */
+async function inTask(title, file, args) {
+  const task = new vscode.Task(
+    { type: 'process' }, vscode.TaskScope.Workspace, title, 'gapi',
+    new vscode.ProcessExecution(setting('path'), [
+      ...args, ...setting('libraries').flatMap((folder) => ['--library', folder]),
+    ], { cwd: workingFolder(file) }),
+  );
+  task.presentationOptions = { reveal: vscode.TaskRevealKind.Always, clear: true, showReuseMessage: false };
+  await vscode.tasks.executeTask(task);
+}
+
 async function run(uri) {
   const file = await chosenFile(uri);
   if (file) {
     const command = path.extname(file) === '.toml' ? 'identify' : 'run';
-    const name = path.basename(file);
-    // A terminal closes with its program: a task keeps what it printed.
-    const task = new vscode.Task(
-      { type: 'process' }, vscode.TaskScope.Workspace, `${command} ${name}`, 'gapi',
-      new vscode.ProcessExecution(setting('path'), [
-        command, file, ...setting('libraries').flatMap((folder) => ['--library', folder]),
-      ], { cwd: workingFolder(file) }),
-    );
-    task.presentationOptions = { reveal: vscode.TaskRevealKind.Always, clear: true, showReuseMessage: false };
-    await vscode.tasks.executeTask(task);
+    await inTask(`${command} ${path.basename(file)}`, file, [command, file]);
+  }
+}
+
+/** Simulates a class of a file: the command above a model. */
+async function simulate(name, model) {
+  const file = await chosenFile(vscode.Uri.file(name));
+  if (file) {
+    await inTask(`simulate ${model}`, file, ['simulate', file, '--model', model, '--stats']);
   }
 }
 
@@ -131,6 +147,8 @@ exports.activate = async (context) => {
     context.subscriptions.push(vscode.commands.registerCommand(`gapilib.${name}`, work));
   };
   command('run', run);
+  command('simulate', simulate);
+  command('identify', (name) => run(vscode.Uri.file(name)));
   command('teach', teach);
   command('report', report);
   command('restart', async () => {

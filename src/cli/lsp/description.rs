@@ -37,6 +37,32 @@ pub fn markdown(library: &Library, entity: Entity) -> Option<String> {
     }
 }
 
+/// What a class says of itself, and the classes in it.
+pub struct Described<'a> {
+    /// Its keyword.
+    pub keyword: &'static str,
+    /// Its description.
+    pub comment: String,
+    /// Its documentation as text.
+    pub documentation: String,
+    /// Its own classes.
+    pub nested: Vec<&'a ClassDefinition>,
+}
+
+/// What a class says of itself.
+pub fn described(definition: &ClassDefinition) -> Described<'_> {
+    let nested = elements(definition).filter_map(|element| match element {
+        Element::Class(nested) => Some(&*nested.class),
+        _ => None,
+    });
+    Described {
+        keyword: keyword(definition.restriction),
+        comment: comment(definition).unwrap_or_default().to_owned(),
+        documentation: documentation(definition).unwrap_or_default(),
+        nested: nested.collect(),
+    }
+}
+
 /// A function of the language or a command of scripts.
 fn function(name: &str) -> Option<String> {
     let declarations = builtins::declarations(name);

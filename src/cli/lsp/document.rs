@@ -76,6 +76,17 @@ impl Document {
         self.language == Language::Script
     }
 
+    /// Whether it is a file of TOML, of which only problems are read.
+    pub fn is_toml(&self) -> bool {
+        self.uri.as_str().ends_with(".toml")
+    }
+
+    /// Whether it is a problem file: one with an experiment.
+    pub fn is_problem(&self) -> bool {
+        let mut lines = self.text.lines();
+        self.is_toml() && lines.any(|line| line.trim_start().starts_with("[[experiment]]"))
+    }
+
     /// The name that is shown in messages.
     pub fn name(&self) -> String {
         match &self.path {

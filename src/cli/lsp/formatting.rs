@@ -11,6 +11,9 @@ use lsp_types::TextEdit;
 /// # Errors
 /// Formatting would change tokens.
 pub fn edits(document: &Document) -> Result<Vec<TextEdit>, Refusal> {
+    if document.is_toml() {
+        return Ok(Vec::new());
+    }
     let text = &*document.text;
     let formatted = match format::format(SourceId::NONE, text, document.language) {
         Ok(formatted) => formatted,

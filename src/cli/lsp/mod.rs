@@ -1,6 +1,7 @@
 //! What editors ask about open documents, by the Language Server Protocol
 //! ([3.17](https://microsoft.github.io/language-server-protocol/)): diagnostics, completion, hover,
-//! definitions and references, renaming, outline, formatting, actions, colours and units.
+//! definitions and references, renaming, outline, symbols of the workspace, signatures, folding, links,
+//! lenses, formatting, actions, colours and units.
 //!
 //! Text goes in and types of the protocol come out. The connection (`cli::connection`) keeps the
 //! documents and hands the newest versions to a [`Workspace`], which keeps the classes in a session: an
@@ -15,9 +16,12 @@ mod completion;
 mod description;
 mod diagnostics;
 mod document;
+mod folding;
 mod formatting;
 mod hints;
+mod lenses;
 mod lines;
+mod links;
 mod navigation;
 mod occurrences;
 mod outline;
@@ -26,11 +30,14 @@ mod recovery;
 mod refusal;
 mod rename;
 mod requests;
+mod signature;
 mod tokens;
 mod uri;
 mod workspace;
+mod workspace_symbols;
 
 pub use client::Client;
+pub(super) use description::described;
 pub use document::Document;
 pub use refusal::Refusal;
 pub use requests::{answer, capabilities};

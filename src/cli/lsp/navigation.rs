@@ -139,6 +139,20 @@ pub fn root(workspace: &Workspace, path: &Path) -> Option<PathBuf> {
     Some(folder.ancestors().take_while(is_package).last().unwrap_or(folder).to_path_buf())
 }
 
+/// The Modelica files in the folders that the editor shows, and of the libraries of open documents.
+pub(super) fn workspace_files(workspace: &Workspace, all: &Documents) -> Vec<PathBuf> {
+    let paths = all.values().filter_map(|one| one.path.clone());
+    let own = paths.filter_map(|path| root(workspace, &path));
+    let folders: BTreeSet<PathBuf> =
+        own.filter(|root| workspace.session.world.exists(&root.join("package.mo"))).collect();
+    let shown = workspace.client.folders.iter();
+    let mut files = Vec::new();
+    for folder in shown.chain(&folders) {
+        collect(workspace, folder, true, &mut files);
+    }
+    files
+}
+
 /// The Modelica files of the libraries of the open documents.
 fn files(workspace: &Workspace, found: &Found, all: &Documents) -> Vec<PathBuf> {
     let paths = all.values().chain([&found.parsed.document]).filter_map(|one| one.path.clone());

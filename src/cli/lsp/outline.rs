@@ -33,6 +33,15 @@ pub fn symbols(parsed: &Parsed) -> Vec<DocumentSymbol> {
     }
 }
 
+/// The package that a file is in, as it says.
+pub fn package(parsed: &Parsed) -> Option<String> {
+    match &parsed.tree {
+        Some(Tree::Classes(file)) => file.within.as_ref().map(|within| within.node.to_string()),
+        _ => None,
+    }
+    .filter(|name| !name.is_empty())
+}
+
 /// The same for clients that do not know trees.
 #[allow(deprecated, reason = "the field must be given")]
 pub fn flat(document: &Document, symbols: Vec<DocumentSymbol>) -> Vec<SymbolInformation> {

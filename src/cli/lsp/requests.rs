@@ -4,22 +4,30 @@ use super::document::Document;
 use super::navigation::{self, Found};
 use super::refusal::Refusal;
 use super::workspace::{Documents, Workspace};
-use super::{actions, completion, description, formatting, hints, outline, rename, tokens};
+use super::{
+    actions, completion, description, folding, formatting, hints, lenses, links, outline, rename,
+    signature, tokens, workspace_symbols,
+};
 use lsp_types::request::{
-    CodeActionRequest, Completion, DocumentHighlightRequest, DocumentSymbolRequest, Formatting,
-    GotoDefinition, HoverRequest, InlayHintRequest, PrepareRenameRequest, References, Rename,
-    Request, SemanticTokensFullRequest,
+    CodeActionRequest, CodeLensRequest, Completion, DocumentHighlightRequest, DocumentLinkRequest,
+    DocumentSymbolRequest, FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest,
+    InlayHintRequest, PrepareRenameRequest, References, Rename, Request, SemanticTokensFullRequest,
+    SignatureHelpRequest, WorkspaceSymbolRequest,
 };
 use lsp_types::{
     CodeActionKind, CodeActionOptions, CodeActionParams, CodeActionProviderCapability,
-    CodeActionResponse, CompletionOptions, CompletionParams, CompletionResponse,
-    DocumentFormattingParams, DocumentHighlight, DocumentHighlightParams, DocumentSymbolParams,
-    DocumentSymbolResponse, GotoDefinitionParams, GotoDefinitionResponse, Hover, HoverParams,
-    HoverProviderCapability, InlayHint, InlayHintParams, Location, OneOf, PrepareRenameResponse,
-    ReferenceParams, RenameOptions, RenameParams, SemanticTokens, SemanticTokensFullOptions,
-    SemanticTokensOptions, SemanticTokensParams, SemanticTokensResult, ServerCapabilities,
-    TextDocumentPositionParams, TextDocumentSyncCapability, TextDocumentSyncKind,
-    TextDocumentSyncOptions, TextEdit, Uri, WorkDoneProgressOptions, WorkspaceEdit,
+    CodeActionResponse, CodeLens, CodeLensOptions, CodeLensParams, CompletionOptions,
+    CompletionParams, CompletionResponse, DocumentFormattingParams, DocumentHighlight,
+    DocumentHighlightParams, DocumentLink, DocumentLinkOptions, DocumentLinkParams,
+    DocumentSymbolParams, DocumentSymbolResponse, FoldingRange, FoldingRangeParams,
+    FoldingRangeProviderCapability, GotoDefinitionParams, GotoDefinitionResponse, Hover,
+    HoverParams, HoverProviderCapability, InlayHint, InlayHintParams, Location, OneOf,
+    PositionEncodingKind, PrepareRenameResponse, ReferenceParams, RenameOptions, RenameParams,
+    SemanticTokens, SemanticTokensFullOptions, SemanticTokensOptions, SemanticTokensParams,
+    SemanticTokensResult, ServerCapabilities, SignatureHelp, SignatureHelpOptions,
+    SignatureHelpParams, TextDocumentPositionParams, TextDocumentSyncCapability,
+    TextDocumentSyncKind, TextDocumentSyncOptions, TextEdit, Uri, WorkDoneProgressOptions,
+    WorkspaceEdit, WorkspaceSymbolParams, WorkspaceSymbolResponse,
 };
 use serde_json::Value;
 use std::sync::Arc;
@@ -60,6 +68,19 @@ pub fn capabilities() -> ServerCapabilities {
         semantic_tokens_provider: Some(colours.into()),
         code_action_provider: Some(CodeActionProviderCapability::Options(actions)),
         inlay_hint_provider: Some(OneOf::Left(true)),
+        workspace_symbol_provider: Some(OneOf::Left(true)),
+        folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
+        code_lens_provider: Some(CodeLensOptions { resolve_provider: Some(false) }),
+        document_link_provider: Some(DocumentLinkOptions {
+            resolve_provider: Some(false),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        }),
+        signature_help_provider: Some(SignatureHelpOptions {
+            trigger_characters: Some(vec!["(".to_owned(), ",".to_owned()]),
+            ..SignatureHelpOptions::default()
+        }),
+        // What every client knows.
+        position_encoding: Some(PositionEncodingKind::UTF16),
         ..ServerCapabilities::default()
     }
 }
@@ -100,6 +121,19 @@ pub fn answer(
             context.with::<CodeActionRequest>(params, RequestContext::actions)
         }
         InlayHintRequest::METHOD => context.with::<InlayHintRequest>(params, RequestContext::hints),
+        WorkspaceSymbolRequest::METHOD => {
+            context.with::<WorkspaceSymbolRequest>(params, RequestContext::symbols)
+        }
+        FoldingRangeRequest::METHOD => {
+            context.with::<FoldingRangeRequest>(params, RequestContext::folding)
+        }
+        CodeLensRequest::METHOD => context.with::<CodeLensRequest>(params, RequestContext::lenses),
+        DocumentLinkRequest::METHOD => {
+            context.with::<DocumentLinkRequest>(params, RequestContext::links)
+        }
+        SignatureHelpRequest::METHOD => {
+            context.with::<SignatureHelpRequest>(params, RequestContext::signature)
+        }
         _ => Err(Refusal::unknown(method)),
     }
 }
@@ -238,6 +272,42 @@ impl RequestContext<'_> {
         let parsed = self.workspace.open(&document, self.all);
         let client = &self.workspace.client;
         Ok(Some(actions::actions(client, &parsed, &params.context.diagnostics)))
+    }
+
+    fn symbols(
+        &mut self,
+        params: WorkspaceSymbolParams,
+    ) -> Result<Option<WorkspaceSymbolResponse>, Refusal> {
+        let found = workspace_symbols::symbols(self.workspace, self.all, &params.query);
+        Ok(Some(WorkspaceSymbolResponse::Flat(found)))
+    }
+
+    fn folding(
+        &mut self,
+        params: FoldingRangeParams,
+    ) -> Result<Option<Vec<FoldingRange>>, Refusal> {
+        let document = self.document(&params.text_document.uri)?;
+        Ok(Some(folding::ranges(&self.workspace.open(&document, self.all))))
+    }
+
+    fn lenses(&mut self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>, Refusal> {
+        let document = self.document(&params.text_document.uri)?;
+        if document.is_toml() {
+            return Ok(Some(lenses::problem(&document)));
+        }
+        Ok(Some(lenses::models(&self.workspace.open(&document, self.all))))
+    }
+
+    fn links(&mut self, params: DocumentLinkParams) -> Result<Option<Vec<DocumentLink>>, Refusal> {
+        let document = self.document(&params.text_document.uri)?;
+        let parsed = self.workspace.open(&document, self.all);
+        Ok(Some(links::links(self.workspace, &parsed)))
+    }
+
+    fn signature(&mut self, params: SignatureHelpParams) -> Result<Option<SignatureHelp>, Refusal> {
+        let at = params.text_document_position_params;
+        let document = self.document(&at.text_document.uri)?;
+        Ok(signature::help(self.workspace, &document, self.all, at.position))
     }
 
     fn hints(&mut self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>, Refusal> {

@@ -48,6 +48,9 @@ fn number(kind: &SemanticTokenType) -> u32 {
 
 /// The tokens of a document, each in one line, as differences.
 pub fn tokens(library: &Library, parsed: &Parsed, names: &[Occurrence]) -> Vec<SemanticToken> {
+    if parsed.document.is_toml() {
+        return Vec::new();
+    }
     let text = &*parsed.document.text;
     let mut found: BTreeMap<usize, (Range<usize>, u32, u32)> = BTreeMap::new();
     let lexemes = syntax::lexemes(SourceId::NONE, text, parsed.document.is_script());

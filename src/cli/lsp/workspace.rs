@@ -13,6 +13,7 @@ use crate::name::Name;
 use crate::packages;
 use crate::script::language::script_checks::check_script;
 use crate::script::models::documents::{CheckedModel, ModelCheck};
+use crate::script::runs::problem;
 use crate::script::{Session, builtins};
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::Restriction;
@@ -144,7 +145,10 @@ impl Workspace {
             return known;
         }
         let source = self.session.sources.add(document.name(), document.text.clone());
-        let read = recovery::read(source, &document.text, document.is_script());
+        let read = match document.is_toml() {
+            true => Read { tree: None, errors: Vec::new() },
+            false => recovery::read(source, &document.text, document.is_script()),
+        };
         let parsed = self.load(document, source, read);
         self.parsed.insert(document.uri.as_str().to_owned(), parsed.clone());
         parsed
@@ -231,6 +235,16 @@ impl Workspace {
         check_script(&mut self.session, script, path.and_then(|path| path.parent()))
     }
 
+    /// What is wrong with a problem file, as `gapi identify` says before a run.
+    fn check_problem(&mut self, parsed: &Parsed) -> Vec<Diagnostic> {
+        let document = &parsed.document;
+        let Some(path) = document.path.as_ref().filter(|_| document.is_problem()) else {
+            return Vec::new();
+        };
+        self.session.grant_input(path);
+        problem::check(&mut self.session, path, (parsed.source, &document.text))
+    }
+
     /// Begins to look for what is wrong with a document: with its text and the names in it.
     pub(crate) fn examine(&mut self, document: &Arc<Document>, all: &Documents) -> Examination {
         let parsed = self.open(document, all);
@@ -239,6 +253,7 @@ impl Workspace {
         let mut models = VecDeque::new();
         if parsed.errors.is_empty() {
             found.extend(self.check_script(&parsed));
+            found.extend(self.check_problem(&parsed));
             for (name, class) in parsed.all_classes() {
                 found.extend(self.session.examine_class(&name));
                 let is_model = matches!(class.restriction, Restriction::Model | Restriction::Block);

@@ -2,6 +2,8 @@
 //! that is visible.
 
 mod context;
+mod graphics;
+mod problem;
 
 use super::client::Client;
 use super::description;
@@ -14,7 +16,8 @@ use crate::functions;
 use crate::name::{Ident, Name};
 use crate::script::builtins;
 use crate::syntax::ast::{CausalityPrefix, Restriction, VariabilityPrefix};
-use context::{Context, Open};
+use context::Open;
+pub(super) use context::{Context, at as context_at};
 use lsp_types::{CompletionItem, CompletionItemKind, CompletionTextEdit, Position, TextEdit};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -27,6 +30,12 @@ pub fn items(
     position: Position,
 ) -> Vec<CompletionItem> {
     let offset = document.offset(position);
+    if document.is_toml() {
+        return match document.is_problem() {
+            true => problem::items(document, offset),
+            false => Vec::new(),
+        };
+    }
     let context = context::at(&document.text, offset);
     if context.in_comment {
         return Vec::new();
@@ -105,10 +114,37 @@ impl Completion<'_> {
             .or_else(|| last(self.library.parts_of_type(self.scope, &name)));
         let Some(class) = meaning.and_then(|meaning| self.library.class_of_declared(meaning))
         else {
-            return Vec::new();
+            return self.in_annotation(path);
         };
-        let members = self.library.members(class);
+        let mut members = self.library.members(class);
+        if members.is_empty() {
+            members = self.redeclared(path, class).map_or(members, |own| self.library.members(own));
+        }
         members.iter().filter(|one| !one.protected).map(|one| self.member(one, '1')).collect()
+    }
+
+    /// Literals of the enumerations that graphical annotations have.
+    fn in_annotation(&self, path: &[String]) -> Vec<CompletionItem> {
+        let is_inside = self.context.open.iter().any(|open| open.name == "annotation");
+        let literals = match path {
+            [name] if is_inside => graphics::literals(name),
+            _ => &[],
+        };
+        let item = |name: &&str| plain(name, CompletionItemKind::ENUM_MEMBER, '1');
+        literals.iter().map(item).collect()
+    }
+
+    /// The class that takes the place of an empty one in the package that the first component of a path is
+    /// from: of the `state` in `Medium.BaseProperties`, `Medium.ThermodynamicState`.
+    fn redeclared(&self, path: &[String], class: ClassId) -> Option<ClassId> {
+        let first = Name::from(Ident::new(path.first()?));
+        let component = self.library.parts_of_reference(self.scope, &first).last().copied()??;
+        let Declared::Component(owner, name) = component else { return None };
+        let (clause, _) = self.library.component(owner, name)?;
+        let package = Name::parse(&clause.type_specifier.name.to_string()).parent();
+        let own = self.library.name_of(class).last()?;
+        let parts = self.library.parts_of_type(self.scope, &package.child(own));
+        self.library.class_of_declared(parts.last().copied()??)
     }
 
     /// Inputs of a called function, or what can be modified in a declaration.

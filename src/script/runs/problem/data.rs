@@ -4,12 +4,13 @@
 use super::file::{ColumnEntry, SigmaEntry};
 use crate::Session;
 use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::identify::problem::{Finding, FindingKind, Severity};
 use crate::mat::errors::DATA_NOTE;
 use crate::mat::{About, Column, MatFile};
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
+use crate::source::Span;
 use crate::units::{Conversion, Unit, in_words};
 
 /// A column in the unit of its variable.
@@ -34,6 +35,12 @@ impl Note {
             Severity::Information => session.note(DATA_NOTE, self.sentence.clone()),
             _ => session.warn(DATA_NOTE, self.sentence.clone()),
         }
+    }
+
+    /// What may change a result, as a diagnostic at this place.
+    pub(super) fn warning(self, place: Span) -> Option<Diagnostic> {
+        let is_warning = self.severity != Severity::Information;
+        is_warning.then(|| Fault::new(DATA_NOTE, self.sentence).at(place).warning())
     }
 
     pub(super) fn finding(self) -> Finding {

@@ -11,6 +11,9 @@ use crate::source::{SourceId, Span};
 use std::path::Path;
 use toml::{Table, Value};
 
+/// What precedes the names of the entries that a table may have.
+pub(super) const ENTRIES: &str = "the entries here are ";
+
 /// Entries that people put a level too high, and where they belong.
 const DEEPER: [(&str, &str); 6] = [
     (
@@ -236,7 +239,7 @@ impl<'t> Place<'t> {
             _ => suggest::did_you_mean(name, known.iter().copied()),
         };
         let all = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        Some(fault.help_if(similar).help(format!("the entries here are {all}")))
+        Some(fault.help_if(similar).help(format!("{ENTRIES}{all}")))
     }
 
     /// An entry that must be there.

@@ -129,8 +129,11 @@ impl Client {
     }
 
     pub fn open(&mut self, path: &Path, text: &str) {
-        let language =
-            if path.extension().is_some_and(|e| e == "mos") { "mos" } else { "modelica" };
+        let language = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("mos") => "mos",
+            Some("toml") => "toml",
+            _ => "modelica",
+        };
         let document =
             json!({"uri": uri(path), "languageId": language, "version": 1, "text": text});
         self.notify("textDocument/didOpen", json!({"textDocument": document}));

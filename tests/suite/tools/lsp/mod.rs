@@ -5,6 +5,7 @@ mod client;
 mod ending;
 mod features;
 mod libraries;
+mod structure;
 
 use crate::support::program::folder;
 use client::{Client, uri};
