@@ -18,6 +18,8 @@ use super::journal::JournalArgs;
 use super::lesson::LessonArgs;
 use super::linearize::LinearizeArgs;
 use super::man::ManArgs;
+#[cfg(feature = "lsp")]
+use super::mcp::McpArgs;
 use super::new::NewArgs;
 use super::options::Global;
 use super::repl::ReplArgs;
@@ -99,6 +101,9 @@ pub(super) enum Command {
     /// Start a language server (LSP) for an editor
     #[cfg(feature = "lsp")]
     Lsp(LspArgs),
+    /// Offer check, simulation and identification to an assistant (MCP)
+    #[cfg(feature = "lsp")]
+    Mcp(McpArgs),
     /// Recreate the report of an identification from its files
     Report(ReportArgs),
     /// Show what a checkpoint, a shard or a trace contains

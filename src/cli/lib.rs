@@ -51,6 +51,8 @@ mod lock;
 #[cfg(feature = "lsp")]
 pub mod lsp;
 mod man;
+#[cfg(feature = "lsp")]
+mod mcp;
 mod memory;
 mod misplaced;
 #[cfg(feature = "mpi")]
@@ -206,6 +208,8 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Fmt(arguments) => fmt::fmt(arguments),
         #[cfg(feature = "lsp")]
         Command::Lsp(arguments) => connection::lsp(arguments, &cli.global),
+        #[cfg(feature = "lsp")]
+        Command::Mcp(arguments) => mcp::mcp(arguments, &cli.global),
         Command::Journal(arguments) => journal::journal(arguments),
         Command::Report(arguments) => report::report(arguments, &cli.global),
         Command::Compare(arguments) => compare::compare(arguments, &cli.global),

@@ -91,7 +91,7 @@ impl Start for LocalStart {
 
 /// This program: where another one embeds it, the one of Python, or else `gapi` where the system finds
 /// it.
-fn program() -> Command {
+pub(super) fn program() -> Command {
     let own = std::env::current_exe().unwrap_or_default();
     if is_called(&own, "python") {
         // The packages of a virtual environment are found by the link that was started, not by what it leads to.

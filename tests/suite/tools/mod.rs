@@ -16,6 +16,7 @@ mod limits;
 mod linear;
 mod lsp;
 mod mat;
+mod mcp;
 mod page;
 mod permissions;
 mod plot;
