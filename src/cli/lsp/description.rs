@@ -56,7 +56,7 @@ pub fn described(definition: &ClassDefinition) -> Described<'_> {
         _ => None,
     });
     Described {
-        keyword: keyword(definition.restriction),
+        keyword: definition.restriction.keyword(),
         comment: comment(definition).unwrap_or_default().to_owned(),
         documentation: documentation(definition).unwrap_or_default(),
         nested: nested.collect(),
@@ -162,23 +162,6 @@ fn prefixes(clause: &ComponentClause) -> String {
     own.chain(more.into_iter().flatten()).map(|word| format!("{word} ")).collect()
 }
 
-/// The keyword of a class.
-pub fn keyword(restriction: Restriction) -> &'static str {
-    match restriction {
-        Restriction::Class => "class",
-        Restriction::Model => "model",
-        Restriction::Block => "block",
-        Restriction::Record => "record",
-        Restriction::OperatorRecord => "operator record",
-        Restriction::Connector => "connector",
-        Restriction::ExpandableConnector => "expandable connector",
-        Restriction::Type => "type",
-        Restriction::Package => "package",
-        Restriction::Function { .. } => "function",
-        Restriction::Operator => "operator",
-    }
-}
-
 /// The description string of a class.
 pub fn comment(definition: &ClassDefinition) -> Option<&str> {
     match &definition.specifier {
@@ -191,7 +174,7 @@ pub fn comment(definition: &ClassDefinition) -> Option<&str> {
 
 fn of_class(library: &Library, class: ClassId) -> String {
     let definition = library.definition_of(class);
-    let mut head = format!("{} {}", keyword(definition.restriction), library.name_of(class));
+    let mut head = format!("{} {}", definition.restriction.keyword(), library.name_of(class));
     if let ClassSpecifier::Short(short) = &definition.specifier {
         head += &format!(" = {}", short.target.name);
         if let Some(Ok(arguments)) = (!short.modification.is_empty()).then(|| arguments(short)) {

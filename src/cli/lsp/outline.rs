@@ -1,6 +1,5 @@
 //! The outline of a document: its classes and their components, or the definitions of a script.
 
-use super::description;
 use super::document::Document;
 use super::parsed::{Parsed, elements};
 use super::recovery::Tree;
@@ -102,7 +101,7 @@ fn class_symbol(document: &Document, class: &ClassDefinition) -> DocumentSymbol 
         }
     }
     let name = class.name.node.to_string();
-    let detail = Some(description::keyword(class.restriction).to_owned());
+    let detail = Some(class.restriction.keyword().to_owned());
     let spans = (class.span, class.name.span);
     symbol(document, (name, detail), kind(class), spans, children)
 }

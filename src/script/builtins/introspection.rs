@@ -138,18 +138,8 @@ fn get_class_restriction(session: &mut Session, mut args: Args) -> Result<Value,
 
 fn restriction(class: &ClassDefinition) -> &'static str {
     match class.restriction {
-        Restriction::Class => "class",
-        Restriction::Model => "model",
-        Restriction::Block => "block",
-        Restriction::Record => "record",
-        Restriction::OperatorRecord => "operator record",
-        Restriction::Connector => "connector",
-        Restriction::ExpandableConnector => "expandable connector",
-        Restriction::Type => "type",
-        Restriction::Package => "package",
         Restriction::Function { operator: true, .. } => "operator function",
-        Restriction::Function { .. } => "function",
-        Restriction::Operator => "operator",
+        other => other.keyword(),
     }
 }
 

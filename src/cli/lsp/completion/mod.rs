@@ -290,7 +290,7 @@ impl Completion<'_> {
         let (kind, detail, comment) = match member.declared {
             Declared::Class(class) => {
                 let definition = self.library.definition_of(class);
-                let detail = description::keyword(definition.restriction).to_owned();
+                let detail = definition.restriction.keyword().to_owned();
                 (class_kind(definition.restriction), Some(detail), description::comment(definition))
             }
             Declared::Component(owner, name) => {

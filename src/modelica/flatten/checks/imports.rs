@@ -96,7 +96,7 @@ fn from_other_than_package(class: Scope<'_>, import: &Import) -> Option<Diagnost
     // Literals are imported from their enumeration; the specification speaks of packages alone.
     (!is_package(found) && !found.is_enumeration()).then(|| {
         fault!(ILLEGAL_IMPORT, "cannot import from `{}`: it is a {}, not a package",
-            found.name(), super::word(found.restriction());
+            found.name(), found.restriction().keyword();
             help: "move the imported element into a package")
         .at(import.span)
     })

@@ -30,7 +30,6 @@ mod visible_elements;
 
 use super::library::{ClassId, Library};
 use crate::diag::Diagnostic;
-use crate::syntax::ast::Restriction;
 use scope::Scope;
 
 /// What is wrong with a class and with those that take part in it; the errors of one class
@@ -80,21 +79,4 @@ fn check_rules(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     modifications::check(class, errors);
     inherited_classes::check(class, errors);
     usage::check(class, errors);
-}
-
-/// A restriction as the messages call it.
-fn word(restriction: Restriction) -> &'static str {
-    match restriction {
-        Restriction::Class => "class",
-        Restriction::Model => "model",
-        Restriction::Block => "block",
-        Restriction::Record => "record",
-        Restriction::OperatorRecord => "operator record",
-        Restriction::Connector => "connector",
-        Restriction::ExpandableConnector => "expandable connector",
-        Restriction::Type => "type",
-        Restriction::Package => "package",
-        Restriction::Function { .. } => "function",
-        Restriction::Operator => "operator",
-    }
 }

@@ -83,7 +83,7 @@ fn wrong_kind(component: &Component<'_>) -> Option<Diagnostic> {
     match class.restriction() {
         Restriction::Model | Restriction::Block | Restriction::Package => Some(
             fault!(ILLEGAL_PREFIX, "the {} `{name}` has the prefix `{word}`",
-                super::word(class.restriction());
+                class.restriction().keyword();
                 help: "remove the prefix; it is allowed only for variables, records and connectors")
             .at(span)
             .warning(),

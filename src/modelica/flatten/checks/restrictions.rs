@@ -255,7 +255,7 @@ fn kind_of_component(
                 "`{}` has the component `{}` of the {} `{}`",
                 class.name(),
                 component.name(),
-                super::word(kind.restriction()),
+                kind.restriction().keyword(),
                 kind.name()
             )
             .at(component.declaration.name.span),
@@ -272,7 +272,7 @@ fn inner_or_outer(component: &Component<'_>) -> Option<&'static str> {
 }
 
 fn prefixed(class: Scope<'_>, component: &Component<'_>, prefix: &str) -> Diagnostic {
-    let what = super::word(class.restriction());
+    let what = class.restriction().keyword();
     fault!(CLASS_RESTRICTION, "`{}` of the {what} `{}` has the prefix `{prefix}`",
         component.name(), class.name();
         help: "remove the prefix")

@@ -266,7 +266,7 @@ fn time(class: Scope<'_>, span: Span) -> Option<Diagnostic> {
             | Restriction::Function { .. }
     );
     has_none.then(|| {
-        let what = super::word(class.restriction());
+        let what = class.restriction().keyword();
         fault!(MISPLACED, "`time` has no meaning in a {what}";
             help: "use it in a model or a block")
         .at(span)

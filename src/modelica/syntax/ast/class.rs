@@ -74,6 +74,25 @@ pub enum Restriction {
     Operator,
 }
 
+impl Restriction {
+    /// The keyword, without prefixes of functions.
+    pub fn keyword(self) -> &'static str {
+        match self {
+            Restriction::Class => "class",
+            Restriction::Model => "model",
+            Restriction::Block => "block",
+            Restriction::Record => "record",
+            Restriction::OperatorRecord => "operator record",
+            Restriction::Connector => "connector",
+            Restriction::ExpandableConnector => "expandable connector",
+            Restriction::Type => "type",
+            Restriction::Package => "package",
+            Restriction::Operator => "operator",
+            Restriction::Function { .. } => "function",
+        }
+    }
+}
+
 /// `pure` or `impure` (MLS §12.3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Purity {

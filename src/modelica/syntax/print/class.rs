@@ -47,25 +47,12 @@ impl Printer {
     }
 
     fn restriction(&mut self, restriction: Restriction) {
-        let text = match restriction {
-            Restriction::Class => "class",
-            Restriction::Model => "model",
-            Restriction::Block => "block",
-            Restriction::Record => "record",
-            Restriction::OperatorRecord => "operator record",
-            Restriction::Connector => "connector",
-            Restriction::ExpandableConnector => "expandable connector",
-            Restriction::Type => "type",
-            Restriction::Package => "package",
-            Restriction::Operator => "operator",
-            Restriction::Function { purity, operator } => {
-                self.flag(purity == Some(Purity::Pure), "pure");
-                self.flag(purity == Some(Purity::Impure), "impure");
-                self.flag(operator, "operator");
-                "function"
-            }
-        };
-        self.word(text);
+        if let Restriction::Function { purity, operator } = restriction {
+            self.flag(purity == Some(Purity::Pure), "pure");
+            self.flag(purity == Some(Purity::Impure), "impure");
+            self.flag(operator, "operator");
+        }
+        self.word(restriction.keyword());
     }
 
     fn short_class(&mut self, short: &ShortClass) {
