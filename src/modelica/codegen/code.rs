@@ -87,6 +87,14 @@ impl CrossingPart {
     }
 }
 
+/// What must hold at every step.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Assertions {
+    pub(crate) each: Vec<LogAssertion>,
+    /// The conditions of all.
+    pub(crate) conditions: Outputs,
+}
+
 /// A message with the condition that must not hold.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LogAssertion {

@@ -3,7 +3,7 @@
 //! The order of the parts decides the numbers of registers and auxiliary variables, and with them
 //! the bits of results where sums are formed: it is part of the contract of equal bytes.
 
-use super::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
+use super::code::{Assertions, CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
 use super::crossing_parts::crossing_parts;
 use super::event_code::{compile_events, linear_in_time, scheduled_in_time};
 use super::events::CompiledRounding;
@@ -49,7 +49,11 @@ impl Program {
         let (switching, roundings) = compilation.relations();
         let selections = compilation.selections();
         let observe = compilation.observation();
-        let [assertions, log_assertions] = [true, false].map(|e| compilation.assertions(e));
+        let assertions = Assertions {
+            conditions: compilation.conditions_of_assertions(),
+            each: compilation.assertions(true),
+        };
+        let log_assertions = compilation.assertions(false);
         let initial_checks = compilation.initial_checks();
         let mut events = compilation.events();
         (events.steps, events.roundings) = (blocks.at_events, roundings);
@@ -341,6 +345,14 @@ impl Compilation {
             values: self.total(&values),
         };
         found.into_iter().map(assertion).collect()
+    }
+
+    /// The conditions of the assertions that end the simulation.
+    fn conditions_of_assertions(&mut self) -> Outputs {
+        let all = self.causalized.dae.assertions.iter();
+        let conditions = all.filter(|a| a.level == Level::Error).map(|a| a.condition);
+        let conditions: Vec<Expr> = conditions.collect();
+        self.total(&conditions)
     }
 
     fn initial_checks(&mut self) -> Vec<Outputs> {

@@ -44,7 +44,7 @@ impl VariableInfo {
 impl Program {
     /// Whether anything must hold between events: assertions that a simulator checks after each step.
     pub fn checks_steps(&self) -> bool {
-        !(self.assertions.is_empty() && self.log_assertions.is_empty())
+        !(self.assertions.each.is_empty() && self.log_assertions.is_empty())
     }
 
     /// The attributes of a variable of [`Program::variables`].

@@ -1,6 +1,6 @@
 //! A compiled model: immutable, shared by any number of systems.
 
-use super::code::CrossingPart;
+use super::code::{Assertions, CrossingPart};
 use super::events::Events;
 use super::instruction::Register;
 use super::registers::Registers;
@@ -135,7 +135,7 @@ pub struct Program {
     pub(crate) steps: Vec<Step>,
     pub(crate) selections: Vec<CompiledSelection>,
     pub(crate) observe: Outputs,
-    pub(crate) assertions: Vec<LogAssertion>,
+    pub(crate) assertions: Assertions,
     /// Warnings: they do not end a simulation.
     pub(crate) log_assertions: Vec<LogAssertion>,
     pub(crate) events: Events,

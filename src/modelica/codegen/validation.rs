@@ -369,7 +369,8 @@ impl Program {
                 .nominals
                 .iter()
                 .all(|(_, tape, register)| tape.is_valid(limits) && limits.has(*register, 1))
-            && self.assertions.iter().all(|assertion| assertion.is_valid(limits))
+            && self.assertions.each.iter().all(|assertion| assertion.is_valid(limits))
+            && self.assertions.conditions.has(self.assertions.each.len(), limits)
             && self.log_assertions.iter().all(|assertion| assertion.is_valid(limits))
             && self.variables.iter().all(|variable| is_found(variable.access))
             && equations.filter_map(|e| e.instance).all(|of| (of.0 as usize) < instances)

@@ -214,4 +214,6 @@ pub(super) struct MessageState {
     pub(super) failed_message: Option<(u32, String)>,
     /// The log of a simulation, where there is a listener.
     pub(super) log: Option<SimulationLog>,
+    /// The conditions of assertions, as evaluated last.
+    pub(super) hold: Vec<f64>,
 }

@@ -9,7 +9,7 @@ use super::state::{
     DelayState, EventState, LoopState, MessageState, OutputState, RelationState, SolutionAtEvent,
 };
 use super::state_selection::Choice;
-use crate::codegen::code::{LogAssertion, Step};
+use crate::codegen::code::{Assertions, LogAssertion, Step};
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Access, Program, number_of_equations};
 use crate::codegen::sequence::{expressions, observing};
@@ -267,25 +267,32 @@ impl System {
     /// The first assertion that does not hold, of those that can be evaluated.
     fn violated(&mut self) -> Option<Failure> {
         let mut failures =
-            (0..self.program.assertions.len()).filter_map(|at| self.assert(at).err());
+            (0..self.program.assertions.each.len()).filter_map(|at| self.assert(at).err());
         failures.find(|failure| matches!(failure, Failure::Assertion { .. }))
     }
 
-    /// Evaluates all assertions.
+    /// Evaluates all assertions, one by one where they do not all hold.
     pub(super) fn assert_all(&mut self) -> Result<(), Failure> {
-        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))
+        let Assertions { each, conditions } = &self.program.assertions;
+        let n = each.len();
+        let mut hold = std::mem::take(&mut self.messages.hold);
+        hold.resize(n, 0.0);
+        let are_known = read(conditions, &mut self.registers, &mut hold).is_ok();
+        let all_hold = are_known && hold.iter().all(|condition| *condition != 0.0);
+        self.messages.hold = hold;
+        if all_hold { Ok(()) } else { (0..n).try_for_each(|at| self.assert(at)) }
     }
 
     /// Evaluates an assertion.
     fn assert(&mut self, at: usize) -> Result<(), Failure> {
-        let assertion = &self.program.assertions[at];
+        let assertion = &self.program.assertions.each[at];
         let mut holds = [0.0];
         read(&assertion.condition, &mut self.registers, &mut holds)?;
         if holds != [0.0] {
             return Ok(());
         }
         let program = self.program.clone();
-        let LogAssertion { assertion, values, .. } = &program.assertions[at];
+        let LogAssertion { assertion, values, .. } = &program.assertions.each[at];
         Err(self.failed_assertion(*assertion, values))
     }
 
@@ -538,7 +545,8 @@ impl Residual for System {
         if !program.selections.is_empty() || self.has_past() {
             return None;
         }
-        let has_assertions = !program.assertions.is_empty() || !program.log_assertions.is_empty();
+        let has_assertions =
+            !program.assertions.each.is_empty() || !program.log_assertions.is_empty();
         let is_watched = has_assertions || self.n_crossings() > 0;
         program.continuous.linearity.map(|linearity| Linearity { is_watched, ..linearity })
     }
@@ -562,7 +570,7 @@ impl Residual for System {
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let tells = self.messages.log.is_some() && !self.program.log_assertions.is_empty();
-        if self.program.assertions.is_empty() && !tells {
+        if self.program.assertions.each.is_empty() && !tells {
             return Ok(());
         }
         self.load_solved(t, y)?;
