@@ -5,16 +5,16 @@ use super::options::{Global, Limits};
 use super::{limits, session};
 use crate::diag::suggest::counted;
 use crate::diag::{Diagnostic, Fault};
+use crate::fault;
 use crate::plot::{self, Picture, Responding};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::models::exported::translate;
-use crate::script::models::linear::{Linear, Number};
+use crate::script::models::linear::{Linear, Number, frequencies, responding};
 use crate::script::models::linearization::linearized;
 use crate::script::models::simulation::SimulationOptions;
 use crate::source::Span;
-use crate::{elementary, fault};
 use clap::{Args, ValueHint};
 use gapilib_identify::significant;
 use std::f64::consts::TAU;
@@ -135,10 +135,12 @@ fn run(
         write(session, path, &bytes).map_err(one)?;
     }
     if picture.is_some() || arguments.response.is_some() {
-        let frequencies = frequencies(arguments, &poles).map_err(one)?;
-        let responses = responses(&linear, &chosen, &frequencies).map_err(one)?;
+        let ends = [arguments.from, arguments.to];
+        let per_decade = f64::from(arguments.per_decade);
+        let frequencies = frequencies(ends, per_decade, &poles).map_err(one)?;
+        let responses = linear.responses_to(&chosen, &frequencies).map_err(one)?;
         if let (Some(path), Some(picture)) = (&arguments.bode, picture) {
-            let figure = plot::bode(&frequencies, &responding(&responses));
+            let figure = plot::bode(&frequencies, &shown(&responses));
             write(session, path, &figure.picture(picture).map_err(one)?).map_err(one)?;
         }
         if let Some(path) = &arguments.response {
@@ -232,95 +234,23 @@ fn roots(text: &mut String, title: &str, roots: &[Number]) {
     }
 }
 
-/// Frequencies evenly by their logarithms, about those of the poles if nothing is asked for.
-fn frequencies(arguments: &LinearizeArgs, poles: &[Number]) -> Result<Vec<f64>, Fault> {
-    let sizes = poles.iter().map(|pole| pole.norm_sqr().sqrt() / TAU).filter(|size| *size > 0.0);
-    let ends = (f64::INFINITY, 0.0);
-    let (slow, fast) = sizes.fold(ends, |(a, b), size: f64| (a.min(size), f64::max(b, size)));
-    let (slow, fast) = if fast > 0.0 { (slow / 10.0, fast * 10.0) } else { (0.01, 100.0) };
-    let (from, to) = (arguments.from.unwrap_or(slow), arguments.to.unwrap_or(fast));
-    if !(from > 0.0 && to > from && to.is_finite()) {
-        return Err(fault!(
-            BAD_OPTION,
-            "the frequencies from {from} to {to} Hz are no range";
-            help: "--from must be positive and below --to"
-        ));
-    }
-    let decades = elementary::log10(to / from);
-    let count = (decades * f64::from(arguments.per_decade)).ceil().clamp(1.0, 1e5) as usize;
-    let at = |k: usize| from * elementary::powf(to / from, k as f64 / count as f64);
-    Ok((0..=count).map(at).collect())
-}
-
-/// A response, with the name of its output and input.
-struct Responses {
-    name: String,
-    values: Vec<Number>,
-}
-
-fn responses(
-    linear: &Linear,
-    inputs: &[usize],
-    frequencies: &[f64],
-) -> Result<Vec<Responses>, Fault> {
-    let [_, names, outputs] = &linear.names;
-    if inputs.is_empty() || outputs.is_empty() {
-        let what = if inputs.is_empty() { "input" } else { "output" };
-        return Err(fault!(BAD_OPTION, "the model has no {what}, so there is no response").help(
-            match inputs.is_empty() {
-                true => "declare one at the top level: `input Real u;`",
-                false => "name a variable: `--output v`",
-            },
-        ));
-    }
-    let mut found = Vec::new();
-    for &input in inputs {
-        for (place, output) in outputs.iter().enumerate() {
-            let name = format!("{output}/{}", names[input]);
-            let values = linear.response((place, input), frequencies).ok_or_else(|| {
-                fault!(
-                    BAD_OPTION,
-                    "the response {name} cannot be computed: a pole lies at one of the frequencies"
-                )
-            })?;
-            found.push(Responses { name, values });
-        }
-    }
-    Ok(found)
-}
-
-/// Magnitudes in dB and phases in degrees, these without jumps.
-fn responding(responses: &[Responses]) -> Vec<Responding> {
-    let one = |own: &Responses| {
-        let magnitude = |value: &Number| 10.0 * elementary::log10(value.norm_sqr());
-        let mut phases: Vec<f64> = Vec::with_capacity(own.values.len());
-        for value in &own.values {
-            let phase = elementary::atan2(value.im, value.re).to_degrees();
-            let rounds = phases.last().map_or(0.0, |last| ((last - phase) / 360.0).round());
-            phases.push(phase + 360.0 * rounds);
-        }
-        Responding {
-            name: own.name.clone(),
-            magnitudes: own.values.iter().map(magnitude).collect(),
-            phases,
-        }
-    };
-    responses.iter().map(one).collect()
+/// Magnitudes and phases.
+fn shown(responses: &[(String, Vec<Number>)]) -> Vec<Responding> {
+    responses.iter().map(|(name, values)| responding(name, values)).collect()
 }
 
 /// A table: the frequency, and of each response real and imaginary part, magnitude and phase.
-fn table(frequencies: &[f64], responses: &[Responses]) -> String {
+fn table(frequencies: &[f64], responses: &[(String, Vec<Number>)]) -> String {
     let mut text = "frequency [Hz]".to_owned();
-    for own in responses {
-        let name = &own.name;
+    for (name, _) in responses {
         _ = write!(text, ",{name} real,{name} imaginary,{name} magnitude [dB],{name} phase [deg]");
     }
     text.push('\n');
-    let shown = responding(responses);
+    let shown = shown(responses);
     for (k, frequency) in frequencies.iter().enumerate() {
         text += &frequency.to_string();
-        for (own, shown) in responses.iter().zip(&shown) {
-            let value = own.values[k];
+        for ((_, values), shown) in responses.iter().zip(&shown) {
+            let value = values[k];
             let [magnitude, phase] = [shown.magnitudes[k], shown.phases[k]];
             _ = write!(text, ",{},{},{magnitude},{phase}", value.re, value.im);
         }

@@ -165,14 +165,20 @@ impl SpectrumInstance {
             .ok_or("the equations are singular at the operating point")?;
         out.reset(self.parts.len() * (n_parameters + 1));
         for frequency in frequencies {
-            let point = response
-                .at(TAU * frequency)
-                .ok_or_else(|| format!("the response has a pole at {frequency} Hz"))?;
+            let omega = TAU * frequency;
+            let pole = || format!("the response has a pole at {frequency} Hz");
+            let point = match n_parameters {
+                0 => None,
+                _ => Some(response.at(omega).ok_or_else(pole)?),
+            };
+            let value = point.as_ref().map_or_else(|| response.value(omega), |own| Some(own.value));
             let factor = self.spectrum.factor;
-            let value = point.value * factor;
+            let value = value.ok_or_else(pole)? * factor;
             self.row.clear();
             self.row.extend(self.parts.iter().map(|part| read(*part, value)));
-            for parameter in 0..n_parameters {
+            let with_derivatives =
+                point.iter().flat_map(|own| (0..n_parameters).map(move |k| (k, own)));
+            for (parameter, point) in with_derivatives {
                 let first = self.places.len() * (parameter + 1);
                 let terms = self.places.iter().enumerate().map(|(at, (row, column))| {
                     let derivative = self.trajectory.column(first + at)[last];

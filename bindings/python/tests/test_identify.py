@@ -156,3 +156,74 @@ def test_the_command_comes_with_the_package(tmp_path):
     (tmp_path / "s.mos").write_text("print(\"hi\");\nexit(7);\n")
     ended = gapi("run", "s.mos")
     assert (ended.returncode, ended.stdout) == (7, "hi\n")
+
+
+def test_process_noise_has_the_likelihood_of_a_kalman_filter(tmp_path):
+    (tmp_path / "M.mo").write_text(
+        "model M parameter Real tau = 3; Real x(start = 0, fixed = true); equation der(x) = -x/tau; end M;"
+    )
+    generator = np.random.default_rng(49)
+    times, tau, noise, sigma = np.arange(1.0, 121.0), 3.0, 1.0, 0.3
+    kept = np.exp(-1 / tau)
+    spread = noise * np.sqrt(tau / 2 * (1 - kept**2))
+    x, measured = 0.0, []
+    for _ in times:
+        x = kept * x + spread * generator.standard_normal()
+        measured.append(x + sigma * generator.standard_normal())
+    solution = gapilib.identify(
+        {
+            "model": "M",
+            "files": ["M.mo"],
+            "bands": False,
+            "parameters": {"tau": {"min": 0.1, "max": 100.0}},
+            "noise": {"x": {"min": 0.05, "max": 20.0}},
+            "experiment": [
+                {
+                    "data": {"time": times, "x": np.array(measured)},
+                    "outputs": {"x": {"column": "x", "sigma": "estimate"}},
+                }
+            ],
+        },
+        folder=tmp_path,
+        out=tmp_path / "noise",
+        progress=False,
+    )
+    found = solution.parameters
+    tau, noise, sigma = found["tau"], found["noise of x"], found["sigma of x"]
+    kept = np.exp(-1 / tau)
+    added = noise**2 * tau / 2 * (1 - kept**2)
+    mean, variance, log = 0.0, 0.0, 0.0
+    for y in measured:
+        mean, variance = kept * mean, kept**2 * variance + added
+        total = variance + sigma**2
+        log += 0.5 * ((y - mean) ** 2 / total + np.log(2 * np.pi * total))
+        mean, variance = mean + variance * (y - mean) / total, variance * sigma**2 / total
+    np.testing.assert_allclose(solution.fitness, log, rtol=1e-6)
+
+
+def test_a_spectrum_is_fitted(tmp_path):
+    (tmp_path / "Cell.mo").write_text(
+        "model Cell parameter Real R = 0.1; parameter Real C = 1; input Real i(start = 0); "
+        "Real v(start = 0, fixed = true); equation C*der(v) = i - v/R; end Cell;"
+    )
+    frequencies = np.geomspace(0.1, 100, 16)
+    impedance = 0.2 / (1 + 2j * np.pi * frequencies * 0.2 * 0.5)
+    solution = gapilib.identify(
+        {
+            "model": "Cell",
+            "files": ["Cell.mo"],
+            "bands": False,
+            "parameters": {"R": {"min": 0.01, "max": 1.0}, "C": {"min": 0.05, "max": 5.0}},
+            "experiment": [
+                {
+                    "data": {"frequency [Hz]": frequencies, "re": impedance.real, "im": impedance.imag},
+                    "spectrum": {"input": "i", "output": "v"},
+                    "outputs": {"real": "re", "imaginary": "im"},
+                }
+            ],
+        },
+        folder=tmp_path,
+        out=tmp_path / "spectrum",
+        progress=False,
+    )
+    np.testing.assert_allclose([solution.parameters["R"], solution.parameters["C"]], [0.2, 0.5], rtol=1e-6)

@@ -15,6 +15,7 @@ pub use poles_zeros::{poles, zeros};
 
 use nalgebra::linalg::{Hessenberg, balancing};
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+use std::cell::OnceCell;
 
 /// Real and imaginary part.
 pub type Number = Complex<f64>;
@@ -42,7 +43,8 @@ pub struct Response<'a> {
     /// Hessenberg matrix T⁻¹ A T of the system without algebraic unknowns.
     reduced: DMatrix<f64>,
     plain: Direction,
-    transposed: Direction,
+    /// Made where derivatives are asked for.
+    transposed: OnceCell<Direction>,
 }
 
 /// What solving the system, or the transposed one, takes.
@@ -84,8 +86,7 @@ impl<'a> Response<'a> {
         }
         let whole = system.jacobian.view((0, 0), (n, n)).into_owned();
         let change = [DMatrix::identity(m, m), DMatrix::identity(m, m)];
-        let mut plain = Direction::new(false, whole.clone(), m, change.clone());
-        let mut transposed = Direction::new(true, whole.transpose(), m, change);
+        let mut plain = Direction::new(false, whole.clone(), m, change);
         if !plain.algebraic.is_invertible() {
             return None;
         }
@@ -101,10 +102,16 @@ impl<'a> Response<'a> {
             reduced = h;
             let from_states = q.transpose() * DMatrix::from_diagonal(&scale.map(|d| 1.0 / d));
             let to_states = DMatrix::from_diagonal(&scale) * q;
-            transposed.change = [to_states.transpose(), from_states.transpose()];
             plain.change = [from_states, to_states];
         }
-        Some(Response { system, reduced, plain, transposed })
+        Some(Response { system, reduced, plain, transposed: OnceCell::new() })
+    }
+
+    /// H at s = jω; `None` at a pole.
+    pub fn value(&self, omega: f64) -> Option<Number> {
+        let s = Number::new(0.0, omega);
+        let (value, _) = self.solved(&Factors::new(&self.reduced, s)?, s)?;
+        Some(value)
     }
 
     /// H and its derivatives at s = jω; `None` at a pole.
@@ -112,22 +119,30 @@ impl<'a> Response<'a> {
         let s = Number::new(0.0, omega);
         let n = self.system.n();
         let factors = Factors::new(&self.reduced, s)?;
+        let (value, right) = self.solved(&factors, s)?;
+        let output = DVector::from_fn(n, |column, _| self.system.jacobian[(n, column)].into());
+        let transposed = self.transposed.get_or_init(|| self.plain.transposed());
+        let mut left: Vec<Number> =
+            transposed.refined(&factors, s, &output)?.iter().copied().collect();
+        left.push(1.0.into());
+        Some(Point { value, right, left })
+    }
+
+    /// H, and the unknowns with the input and its derivatives.
+    fn solved(&self, factors: &Factors, s: Number) -> Option<(Number, Vec<Number>)> {
+        let n = self.system.n();
         let orders = self.system.jacobian.ncols() - n;
         let input: Vec<Number> = (0..orders).map(|k| s.powu(k as u32)).collect();
         let forced = DVector::from_fn(n, |row, _| {
             let of = |(k, u): (usize, &Number)| u * self.system.jacobian[(row, n + k)];
             input.iter().enumerate().map(of).sum::<Number>()
         });
-        let output = DVector::from_fn(n, |column, _| self.system.jacobian[(n, column)].into());
         let mut right: Vec<Number> =
-            self.plain.refined(&factors, s, &forced)?.iter().copied().collect();
+            self.plain.refined(factors, s, &forced)?.iter().copied().collect();
         right.extend(input);
-        let mut left: Vec<Number> =
-            self.transposed.refined(&factors, s, &output)?.iter().copied().collect();
-        left.push(1.0.into());
         let last = self.system.jacobian.row(n);
         let value = last.iter().zip(&right).map(|(entry, v)| v * *entry).sum();
-        Some(Point { value, right, left })
+        Some((value, right))
     }
 }
 
@@ -143,6 +158,13 @@ impl Direction {
         let g_x = whole.view((m, 0), (n - m, m)).into_owned();
         let algebraic = whole.view((m, m), (n - m, n - m)).into_owned().lu();
         Direction { is_transposed, whole, coupling: [f_z, g_x], algebraic, change }
+    }
+
+    /// What solving the transposed system takes.
+    fn transposed(&self) -> Direction {
+        let [from_states, to_states] = &self.change;
+        let change = [to_states.transpose(), from_states.transpose()];
+        Direction::new(true, self.whole.transpose(), from_states.nrows(), change)
     }
 
     /// The solution of (s E − A) v = b after a step of refinement.
@@ -286,6 +308,7 @@ mod tests {
             let s = Number::new(0.0, omega);
             let point = response.at(omega).unwrap();
             assert_near(point.value, r1 + l * s + 1.0 / (1.0 / r2 + c * s));
+            assert_eq!(response.value(omega), Some(point.value));
             // by R₁, by L, and by R₂ through the entry −R₂ of the algebraic equation
             assert_near(point.by_entry(2, 2), 1.0.into());
             assert_near(point.by_entry(2, 3), s);

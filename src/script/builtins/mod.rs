@@ -23,6 +23,7 @@ mod inputs;
 mod installation;
 mod introspection;
 mod last_results;
+mod linear_systems;
 mod linearization;
 mod loading;
 mod matrices;
@@ -139,6 +140,9 @@ pub static FAMILIES: &[&Family] = &[
     &introspection::FAMILY,
     &introspection::KINDS,
     &linearization::FAMILY,
+    &linear_systems::FAMILY,
+    &linear_systems::PICTURES,
+    &linear_systems::RECORDS,
     &linearization::OPENMODELICA,
     &loading::FAMILY,
     &loading::OPENMODELICA,

@@ -1,8 +1,12 @@
 //! Linear models of deviations from a point, their poles, zeros and responses.
 
 use crate::diag::Fault;
+use crate::fault;
 pub use crate::frequency::Number;
+use crate::plot::Responding;
+use crate::registry::BAD_OPTION;
 
+use crate::elementary;
 use crate::frequency::{self, LinearSystem, Response};
 use crate::mat::{self, Matrix};
 use crate::results::ResultTable;
@@ -82,7 +86,51 @@ impl Linear {
     pub fn response(&self, channel: (usize, usize), frequencies: &[f64]) -> Option<Vec<Number>> {
         let system = self.system(channel);
         let response = Response::new(&system)?;
-        frequencies.iter().map(|hertz| Some(response.at(TAU * hertz)?.value)).collect()
+        frequencies.iter().map(|hertz| response.value(TAU * hertz)).collect()
+    }
+
+    /// The responses from all inputs to all outputs, with their names.
+    ///
+    /// # Errors
+    /// A model without inputs or outputs, a pole at one of the frequencies.
+    pub fn responses(&self, frequencies: &[f64]) -> Result<Vec<(String, Vec<Number>)>, Fault> {
+        let all: Vec<usize> = (0..self.names[1].len()).collect();
+        self.responses_to(&all, frequencies)
+    }
+
+    /// The same from these inputs, by their places.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn responses_to(
+        &self,
+        inputs: &[usize],
+        frequencies: &[f64],
+    ) -> Result<Vec<(String, Vec<Number>)>, Fault> {
+        let [_, names, outputs] = &self.names;
+        if inputs.is_empty() || outputs.is_empty() {
+            let what = if inputs.is_empty() { "input" } else { "output" };
+            return Err(fault!(BAD_OPTION, "the model has no {what}, so there is no response")
+                .help(match inputs.is_empty() {
+                    true => "declare one at the top level: `input Real u;`",
+                    false => "name a variable: `--output v`",
+                }));
+        }
+        let mut found = Vec::new();
+        for &input in inputs {
+            for (place, output) in outputs.iter().enumerate() {
+                let name = format!("{output}/{}", names[input]);
+                let values = self.response((place, input), frequencies).ok_or_else(|| {
+                    fault!(
+                        BAD_OPTION,
+                        "the response {name} cannot be computed: a pole lies at one of the \
+                         frequencies"
+                    )
+                })?;
+                found.push((name, values));
+            }
+        }
+        Ok(found)
     }
 
     /// The system from an input to an output.
@@ -95,5 +143,47 @@ impl Linear {
             (true, true) => self.d[(output, input)],
         };
         LinearSystem { n_states: n, jacobian: DMatrix::from_fn(n + 1, n + 1, entry) }
+    }
+}
+
+/// Frequencies in Hz evenly by their logarithms, about those of the poles where no ends are given.
+///
+/// # Errors
+/// Ends that are no range.
+pub fn frequencies(
+    [from, to]: [Option<f64>; 2],
+    per_decade: f64,
+    poles: &[Number],
+) -> Result<Vec<f64>, Fault> {
+    let sizes = poles.iter().map(|pole| pole.norm_sqr().sqrt() / TAU).filter(|size| *size > 0.0);
+    let ends = (f64::INFINITY, 0.0);
+    let (slow, fast) = sizes.fold(ends, |(a, b), size: f64| (a.min(size), f64::max(b, size)));
+    let (slow, fast) = if fast > 0.0 { (slow / 10.0, fast * 10.0) } else { (0.01, 100.0) };
+    let (from, to) = (from.unwrap_or(slow), to.unwrap_or(fast));
+    if !(from > 0.0 && to > from && to.is_finite()) {
+        return Err(fault!(
+            BAD_OPTION,
+            "the frequencies from {from} to {to} Hz are no range";
+            help: "--from must be positive and below --to"
+        ));
+    }
+    let decades = elementary::log10(to / from);
+    let count = (decades * per_decade).ceil().clamp(1.0, 1e5) as usize;
+    let at = |k: usize| from * elementary::powf(to / from, k as f64 / count as f64);
+    Ok((0..=count).map(at).collect())
+}
+
+/// Magnitudes in dB and phases in degrees, these without jumps.
+pub fn responding(name: &str, values: &[Number]) -> Responding {
+    let mut phases: Vec<f64> = Vec::with_capacity(values.len());
+    for value in values {
+        let phase = elementary::atan2(value.im, value.re).to_degrees();
+        let rounds = phases.last().map_or(0.0, |last| ((last - phase) / 360.0).round());
+        phases.push(phase + 360.0 * rounds);
+    }
+    Responding {
+        name: name.to_owned(),
+        magnitudes: values.iter().map(|own| 10.0 * elementary::log10(own.norm_sqr())).collect(),
+        phases,
     }
 }

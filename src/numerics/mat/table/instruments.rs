@@ -78,6 +78,16 @@ mod tests {
         assert_eq!((read[2].0.as_str(), &read[2].2), ("Zreal", &vec![0.5, 0.75]));
     }
 
+    /// Autolab (Nova) writes a table as others do.
+    #[test]
+    fn autolab_names_its_units_in_brackets() {
+        let text = "Index;Frequency (Hz);Z' (Ω);-Z'' (Ω);Z (Ω);-Phase (°);Time (s)\n\
+            1;10000;0.05;0.0008;0.05;0.9;0\n2;7585.78;0.0501;0.001;0.0501;1.2;3.2\n";
+        let read = columns("a.txt", text);
+        assert_eq!(read[1].2, [10000.0, 7585.78]);
+        assert_eq!((read[3].0.as_str(), &read[3].2), ("-Z'' (Ω)", &vec![0.0008, 0.001]));
+    }
+
     #[test]
     fn zview_writes_its_names_as_one_cell_or_before_the_end_of_comments() {
         let quoted = "\"Z60W Data File: Version 1.1\"\n\"\"\n0,2,0,1\n41\n\
