@@ -73,6 +73,23 @@ function inTerminal(title, cwd, args) {
   return terminal;
 }
 
+/** Milliseconds after which the server has answered what can be folded. */
+const FOLDED = 500;
+const folded = new Set();
+
+/** Folds the annotations of a file, which are ranges of the kind region, when it is first shown. */
+async function foldAnnotations(editor) {
+  const document = editor?.document;
+  if (document?.languageId !== 'modelica' || !setting('foldAnnotations') || folded.has(document.uri.toString())) {
+    return;
+  }
+  folded.add(document.uri.toString());
+  await new Promise((done) => setTimeout(done, FOLDED));
+  if (vscode.window.activeTextEditor === editor) {
+    await vscode.commands.executeCommand('editor.foldAllMarkerRegions');
+  }
+}
+
 /** Runs gapi on a file in a task: a terminal closes with its program, a task keeps what it printed. */
 async function inTask(title, file, args) {
   const task = new vscode.Task(
@@ -156,6 +173,8 @@ exports.activate = async (context) => {
     await start();
   });
   context.subscriptions.push(
+    vscode.window.onDidChangeActiveTextEditor(foldAnnotations),
+    vscode.workspace.onDidCloseTextDocument((closed) => folded.delete(closed.uri.toString())),
     vscode.workspace.onDidChangeConfiguration(async (change) => {
       if (change.affectsConfiguration('gapilib')) {
         await stop();
@@ -164,6 +183,7 @@ exports.activate = async (context) => {
     }),
   );
   await start();
+  await foldAnnotations(vscode.window.activeTextEditor);
 };
 
 exports.deactivate = stop;

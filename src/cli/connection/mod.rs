@@ -4,6 +4,7 @@
 //! writes. So documents are up to date and requests are answered while a model is examined. None of
 //! them is waited for when the client ends the connection: a large library may take minutes.
 
+mod announced;
 mod frames;
 mod outgoing;
 mod queue;

@@ -1,6 +1,7 @@
 //! The thread that knows the classes: answers requests, and examines documents between them. Models,
 //! which may take seconds, are examined one after the other by another thread.
 
+use super::announced::Announced;
 use super::outgoing::Outgoing;
 use super::queue::{Queue, Work};
 use crate::STACK;
@@ -29,6 +30,8 @@ pub(super) struct Worker {
     is_busy: bool,
     /// Errors in the text of open documents.
     shown: BTreeMap<String, Messages>,
+    /// Documents whose first examination is under way.
+    announced: Announced,
 }
 
 /// What is wrong, wherever: what moves while someone types is nothing new.
@@ -42,8 +45,17 @@ struct Begun {
 
 impl Worker {
     pub(super) fn new(workspace: Workspace, queue: Arc<Queue>, client: Outgoing) -> Worker {
-        let shown = BTreeMap::new();
-        Worker { workspace, queue, client, begun: None, count: 0, is_busy: false, shown }
+        let announced = Announced::new(client.clone(), workspace.shows_progress());
+        Worker {
+            workspace,
+            queue,
+            client,
+            begun: None,
+            count: 0,
+            is_busy: false,
+            shown: BTreeMap::new(),
+            announced,
+        }
     }
 
     /// Does what is in the queue, without end.
@@ -58,6 +70,7 @@ impl Worker {
                     self.drop_examination(&document);
                     self.workspace.close(&document);
                     self.shown.remove(document.uri.as_str());
+                    self.announced.end(&document);
                     self.publish(&document.uri, None, Vec::new());
                 }
                 Work::Forget => {
@@ -79,6 +92,9 @@ impl Worker {
         self.drop_examination(&document);
         if let Some(former) = self.begun.take() {
             self.queue.put_off(&former.document);
+        }
+        if !self.shown.contains_key(document.uri.as_str()) {
+            self.announced.begin(&document);
         }
         let examination = self.workspace.examine(&document, documents);
         self.show_first(&document, &examination);
@@ -108,9 +124,10 @@ impl Worker {
             return run_check(self.count, check, self.queue.clone());
         }
         let found = self.workspace.diagnostics(&begun.examination);
-        let (uri, version) = (begun.document.uri.clone(), begun.document.version);
+        let document = begun.document.clone();
         self.begun = None;
-        self.publish(&uri, Some(version), found);
+        self.publish(&document.uri, Some(document.version), found);
+        self.announced.end(&document);
     }
 
     fn add(&mut self, count: usize, checked: Option<CheckedModel>) {

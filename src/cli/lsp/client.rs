@@ -25,6 +25,8 @@ pub struct Client {
     versioned_changes: bool,
     /// Outlines may be trees.
     pub(crate) nested_outline: bool,
+    /// Work that takes long may be announced.
+    pub(crate) progress: bool,
 }
 
 impl Client {
@@ -41,6 +43,7 @@ impl Client {
             markdown_completion: completion_formats(all).map(is_markdown),
             versioned_changes: versioned_changes(all).unwrap_or(false),
             nested_outline: nested_outline(all).unwrap_or(false),
+            progress: all.window.as_ref().and_then(|own| own.work_done_progress).unwrap_or(false),
         }
     }
 

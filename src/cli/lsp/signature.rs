@@ -98,9 +98,11 @@ fn of_class(library: &Library, scope: Option<ClassId>, name: &str) -> Option<Vec
 /// The inputs of a function of the language, or in a script of a command.
 fn of_function(name: &str, is_script: bool) -> Option<Vec<Input>> {
     let plain = |name: &str| Input { name: name.to_owned(), label: name.to_owned(), comment: None };
-    if let Some(function) = functions::find(name) {
-        return Some(function.inputs.iter().map(|input| plain(input)).collect());
-    }
-    let inputs = if is_script { builtins::inputs(name) } else { Vec::new() };
+    let inputs = match functions::find(name) {
+        Some(function) => function.inputs.to_vec(),
+        None if is_script => builtins::inputs(name),
+        None => Vec::new(),
+    };
+    // Elementary functions have inputs without names.
     (!inputs.is_empty()).then(|| inputs.into_iter().map(plain).collect())
 }

@@ -80,6 +80,11 @@ impl Workspace {
         }
     }
 
+    /// Whether work that takes long may be announced to the client.
+    pub(crate) fn shows_progress(&self) -> bool {
+        self.client.progress
+    }
+
     /// Files have changed on the disk: all is read again when it is needed.
     pub fn forget(&mut self) {
         self.session = (self.new_session)();

@@ -43,6 +43,7 @@ class Column(TypedDict, total=False):
     weight: Union[float, str]
     sigma: Union[float, str]
     error: str
+    degrees_of_freedom: float
     delay: Union[float, str]
 
 

@@ -122,7 +122,7 @@ fn the_inputs_of_a_call_are_shown_while_it_is_written() {
     output Real y = a*b;
   end f;
   Real x = f(1, b = 3);
-  Real y = atan2(1, 2);
+  Real y = homotopy(1, 2);
 end M;
 ";
     client.open(&path, text);
@@ -138,7 +138,7 @@ end M;
     assert_eq!(first["signatures"][0]["parameters"][0]["documentation"], "first");
     assert_eq!(first["activeParameter"], 0);
     assert_eq!(at(6, 20)["activeParameter"], 1);
-    assert_eq!(at(7, 20)["activeParameter"], 1);
+    assert_eq!(at(7, 23)["activeParameter"], 1);
     assert_eq!(at(1, 4), Value::Null);
     assert_eq!(client.shut_down(), 0);
 }
@@ -244,5 +244,28 @@ end P;
     client.open(&path, text);
     assert_eq!(offered(&mut client, &path, text, "= medium.state."), ["p", "T"]);
     assert_eq!(offered(&mut client, &path, text, "smooth = Smooth."), ["None", "Bezier"]);
+    assert_eq!(client.shut_down(), 0);
+}
+
+#[test]
+fn the_first_examination_of_a_document_is_announced() {
+    let here = folder(&[]);
+    let mut client = Client::uninitialized(here.path());
+    let capabilities = json!({"window": {"workDoneProgress": true}});
+    client.request("initialize", json!({"capabilities": capabilities}));
+    client.notify("initialized", json!({}));
+    let path = here.path().join("M.mo");
+    client.open(&path, "model M Real x = 1; end M;");
+    let created = client.read().unwrap();
+    assert_eq!(created["method"], "window/workDoneProgress/create");
+    let begun = client.read().unwrap();
+    assert_eq!(begun["params"]["value"]["title"], "Checking M.mo");
+    assert!(client.diagnostics(&path, 1).is_empty());
+    let ended = client.read().unwrap();
+    assert_eq!(ended["params"]["value"]["kind"], "end");
+    assert_eq!(ended["params"]["token"], created["params"]["token"]);
+    // Not at every change.
+    client.change(&path, 2, "model M Real x = 2; end M;");
+    assert!(client.diagnostics(&path, 2).is_empty());
     assert_eq!(client.shut_down(), 0);
 }
