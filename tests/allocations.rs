@@ -252,6 +252,7 @@ fn curve(evaluations: u64) -> Problem {
             relative: Vec::new(),
             sigma: Sigma::Unknown,
             law: Default::default(),
+            censored: Vec::new(),
             column: "V".to_owned(),
             x_column: String::new(),
             rows: Vec::new(),

@@ -452,6 +452,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         relative: Vec::new(),
         sigma: Sigma::Unknown,
         law: crate::fitness::Law::Normal,
+        censored: Vec::new(),
         column: study.y.name.clone(),
         x_column: String::new(),
         rows: Vec::new(),

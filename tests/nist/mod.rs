@@ -183,6 +183,7 @@ impl Dataset {
             relative: Vec::new(),
             sigma: Sigma::Unknown,
             law: Default::default(),
+            censored: Vec::new(),
             column: "y".into(),
             x_column: String::new(),
             rows: Vec::new(),

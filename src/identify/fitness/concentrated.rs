@@ -76,9 +76,9 @@ impl Concentrated {
         let group = |floor| Group { count: 0.0, floor, searched: Vec::new() };
         let mut groups: Vec<Group> = floor.into_iter().map(group).collect();
         let mut n_measured = 0.0;
-        for (_, own) in &points {
+        for (law, own) in &points {
             match own {
-                Deviation::Group(group) => groups[*group].count += 1.0,
+                Deviation::Group(group) => groups[*group].count += law.densities(),
                 Deviation::Of(_) => continue,
                 Deviation::Given | Deviation::Computed(_) => {}
             }
@@ -104,7 +104,8 @@ impl Concentrated {
         };
         let twice = |law: Law, u: f64| if is_rounded { law.rounded(u) } else { law.twice(u) };
         let differences = super::differences(simulated, measured, weights);
-        for (k, (u, (law, own))) in differences.zip(&self.points).enumerate() {
+        for (k, (difference, (law, own))) in differences.zip(&self.points).enumerate() {
+            let u = -difference;
             match *own {
                 Deviation::Given if *law == Law::Poisson => {
                     scales.given += Law::twice_of_count(simulated[k], measured[k]);
@@ -120,11 +121,12 @@ impl Concentrated {
                 Deviation::Computed(at) => {
                     let sigma = simulated[at];
                     let own = u / sigma;
-                    let square = law.square(own, is_rounded);
                     // The logarithm of what is no deviation is not a number: the simulation has failed.
-                    scales.computed += twice(*law, own) + 2.0 * elementary::ln(sigma);
-                    let of_scale = (square - 1.0) * (square - 1.0) / law.information_of_scale();
-                    scales.computed_squares += square + of_scale;
+                    let of_density = law.densities() * 2.0 * elementary::ln(sigma);
+                    scales.computed += twice(*law, own) + of_density;
+                    let excess = law.moment(own, is_rounded) - law.densities();
+                    let of_scale = excess * excess / law.information_of_scale();
+                    scales.computed_squares += law.square(own, is_rounded) + of_scale;
                 }
                 Deviation::Of(_) => {}
             }
@@ -138,12 +140,12 @@ impl Concentrated {
                 scales.given_squares += group.count;
                 continue;
             }
-            let u = |k: &usize| (self.points[*k].0, weights[*k] * (measured[*k] - simulated[*k]));
+            let u = |k: &usize| (self.points[*k].0, weights[*k] * (simulated[*k] - measured[*k]));
             let points: Vec<(Law, f64)> = group.searched.iter().map(u).collect();
             let scale = likeliest(&points, group.floor, variance.sqrt(), is_rounded);
             *variance = scale * scale;
             for (law, u) in points {
-                scales.given += twice(law, u / scale) - 1.0;
+                scales.given += twice(law, u / scale) - law.densities();
                 scales.given_squares += law.square(u / scale, is_rounded);
             }
         }
@@ -163,12 +165,12 @@ fn root_of_count(expected: f64) -> f64 {
     if expected < f64::MIN_POSITIVE { f64::MIN_POSITIVE.sqrt() } else { expected.sqrt() }
 }
 
-/// The most likely scale of points, Σ u ψ(u) = n with u in units of it, but not less than `floor`. The
+/// The most likely scale of points, Σ u ψ(u) = n with u in units of it and n values that were measured, but not less than `floor`. The
 /// sum falls with the scale, so that the root is between two scales, and halving finds it.
 fn likeliest(points: &[(Law, f64)], floor: f64, start: f64, is_rounded: bool) -> f64 {
-    let n = points.len() as f64;
     let excess = |scale: f64| {
-        points.iter().map(|(law, u)| law.square(u / scale, is_rounded)).sum::<f64>() - n
+        let one = |(law, u): &(Law, f64)| law.moment(u / scale, is_rounded) - law.densities();
+        points.iter().map(one).sum::<f64>()
     };
     if start.is_nan() || excess(floor) <= 0.0 {
         return if start.is_nan() { f64::NAN } else { floor };
@@ -191,12 +193,13 @@ impl Fitness for Concentrated {
         let scales = self.scales([simulated, measured, weights], false);
         let of_points = weights.iter().zip(measured).zip(&self.points);
         let of_points = of_points.filter(|(_, (_, own))| !matches!(own, Deviation::Of(_)));
+        let densities = of_points.clone().filter(|(_, (law, _))| !law.is_censored());
         let is_normal = |law: Law| law == Law::Normal;
         let others = of_points.clone().filter(|(_, (law, _))| !is_normal(*law));
         let others = others.map(|((_, y), (law, _))| law.constant(*y) - Law::Normal.constant(*y));
         let constant: f64 = self.groups.iter().map(|own| own.count).sum::<f64>()
             + self.n_measured * Law::Normal.constant(0.0)
-            - 2.0 * of_points.map(|((w, _), _)| elementary::ln(*w)).sum::<f64>()
+            - 2.0 * densities.map(|((w, _), _)| elementary::ln(*w)).sum::<f64>()
             + others.sum::<f64>();
         checked(0.5 * (self.exponent(&scales) + constant))
     }
@@ -224,13 +227,18 @@ impl Fitness for Concentrated {
                 let sigma = simulated[k];
                 let u = weights[point] / sigma * (simulated[point] - measured[point]);
                 let information = law.information_of_scale().sqrt();
-                residuals[k] = root * kappa * (law.square(u, true) - 1.0) / information;
+                let excess = law.moment(u, true) - law.densities();
+                residuals[k] = root * kappa * excess / information;
                 factors[k] = -root / per * information / sigma;
                 continue;
             }
             let own = self.own_scale(k, (simulated, weights), &scales);
-            let factor = law.factor(weights[k] / own * (simulated[k] - measured[k]));
-            residuals[k] = root * kappa * weights[k] / own * factor * (simulated[k] - measured[k]);
+            let u = weights[k] / own * (simulated[k] - measured[k]);
+            let factor = law.factor(u);
+            residuals[k] = match law.is_censored() {
+                true => root * kappa * law.residual(u),
+                false => root * kappa * weights[k] / own * factor * (simulated[k] - measured[k]),
+            };
             factors[k] = root / per * weights[k] / own * factor;
         }
         true
@@ -246,8 +254,8 @@ impl Fitness for Concentrated {
         let own = |(k, (law, deviation)): (usize, &(Law, Deviation))| match deviation {
             Deviation::Of(_) => law.information_of_scale().sqrt() / simulated[k],
             _ => {
-                weights[k] / self.own_scale(k, (simulated, weights), &scales)
-                    * law.root_information()
+                let per = weights[k] / self.own_scale(k, (simulated, weights), &scales);
+                per * law.root_information(per * (simulated[k] - measured[k]))
             }
         };
         Some(self.points.iter().enumerate().map(own).collect())

@@ -12,6 +12,10 @@
 //! | Laplace | abs(u) | u f | 1/√abs(u) | 1 | 1 |
 //! | Student, ν | (ν+1)/2 ln(1 + u²/ν) | u f | √((ν+1)/(ν+u²)) | (ν+1)/(ν+3) | 2ν/(ν+3) |
 //!
+//! Of a value below a limit of detection y, the probability of that is the likelihood, with the normal
+//! distribution Φ: ρ = −ln Φ(−u), and −ln Φ(u) above one. Its hazard h = φ/Φ is ψ, and h (h ± u), its
+//! derivative, is f². Such points have no density, and so no scale of their own.
+//!
 //! A count y of a Poisson distribution has no scale: ŷ is its variance, 1/ŷ its information, and
 //! ρ = ŷ − y − y ln(ŷ/y).
 //!
@@ -19,7 +23,7 @@
 //! [McCullagh & Nelder 1989](gapilib_base::bibliography#mccullagh-nelder-1989) for counts.
 
 use crate::elementary;
-use crate::problem::distributions::ln_gamma;
+use crate::problem::distributions::{ln_gamma, normal_below, normal_density};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{LN_2, PI, TAU};
 
@@ -39,6 +43,25 @@ pub enum Law {
     Student(f64),
     /// The measured value is a count, the simulated one its expectation.
     Poisson,
+    /// Normal, and known to be less than the measured value only.
+    Below,
+    /// Normal, and known to be more than the measured value only.
+    Above,
+}
+
+/// From here on the normal distribution is its asymptotic series, to 1e-11; beyond 38 it has no value.
+const FAR: f64 = 30.0;
+
+/// −ln Φ(−u), and the hazard φ(u)/Φ(−u).
+fn tail(u: f64) -> [f64; 2] {
+    if u > FAR {
+        let square = 1.0 / (u * u);
+        let series = 1.0 - square * (1.0 - 3.0 * square * (1.0 - 5.0 * square));
+        let log = 0.5 * u * u + elementary::ln(u) + 0.5 * elementary::ln(TAU);
+        return [log - elementary::ln(series), u / series];
+    }
+    let probability = normal_below(-u);
+    [-elementary::ln(probability), normal_density(u) / probability]
 }
 
 impl Law {
@@ -48,6 +71,45 @@ impl Law {
             Law::Normal | Law::Poisson => u * u,
             Law::Laplace => 2.0 * u.abs(),
             Law::Student(freedom) => (freedom + 1.0) * elementary::ln(1.0 + u * u / freedom),
+            Law::Below => 2.0 * tail(u)[0],
+            Law::Above => 2.0 * tail(-u)[0],
+        }
+    }
+
+    /// Whether a limit was measured, not a value.
+    pub(super) fn is_censored(self) -> bool {
+        matches!(self, Law::Below | Law::Above)
+    }
+
+    /// How many densities a point has in the likelihood: none where a limit was measured.
+    pub(super) fn densities(self) -> f64 {
+        if self.is_censored() { 0.0 } else { 1.0 }
+    }
+
+    /// ψ and its derivative where a limit was measured.
+    fn hazard(self, u: f64) -> [f64; 2] {
+        let side = if self == Law::Below { 1.0 } else { -1.0 };
+        let own = tail(side * u)[1];
+        // Rounding takes the difference of large numbers below 0.
+        [side * own, (own * (own - side * u)).max(0.0)]
+    }
+
+    /// The residual r.
+    pub(super) fn residual(self, u: f64) -> f64 {
+        match self {
+            Law::Below | Law::Above => {
+                let [derivative, curvature] = self.hazard(u);
+                if curvature > 0.0 { derivative / curvature.sqrt() } else { 0.0 * u }
+            }
+            _ => self.factor(u) * u,
+        }
+    }
+
+    /// u ψ(u).
+    pub(super) fn moment(self, u: f64, is_rounded: bool) -> f64 {
+        match self {
+            Law::Below | Law::Above => u * self.hazard(u)[0],
+            _ => self.square(u, is_rounded),
         }
     }
 
@@ -70,7 +132,7 @@ impl Law {
         }
     }
 
-    /// f: the residual is u times this.
+    /// f: but for limits, the residual is u times this.
     pub(super) fn factor(self, u: f64) -> f64 {
         match self {
             Law::Normal | Law::Poisson => 1.0,
@@ -78,15 +140,16 @@ impl Law {
             Law::Laplace if u.abs() < ROUNDED => 1.0 / ROUNDED.sqrt(),
             Law::Laplace => 1.0 / u.abs().sqrt(),
             Law::Student(freedom) => ((freedom + 1.0) / (freedom + u * u)).sqrt(),
+            Law::Below | Law::Above => self.hazard(u)[1].sqrt(),
         }
     }
 
-    /// u ψ(u), the square of the residual.
+    /// The square of the residual, u ψ(u) but for limits.
     pub(super) fn square(self, u: f64, is_rounded: bool) -> f64 {
         match self {
             Law::Laplace if !is_rounded => u.abs(),
             Law::Normal => u * u,
-            _ => elementary::powi(self.factor(u) * u, 2),
+            _ => elementary::powi(self.residual(u), 2),
         }
     }
 
@@ -102,13 +165,15 @@ impl Law {
             Law::Poisson if measured > 0.0 => {
                 2.0 * (measured - measured * elementary::ln(measured) + ln_gamma(measured + 1.0))
             }
-            Law::Poisson => 0.0,
+            Law::Poisson | Law::Below | Law::Above => 0.0,
         }
     }
 
-    /// The root of the information that a point has of its expectation, in units of w/σ.
-    pub(super) fn root_information(self) -> f64 {
+    /// The root of the information that a point has of its expectation, in units of w/σ; that of a limit
+    /// depends on how far it is.
+    pub(super) fn root_information(self, u: f64) -> f64 {
         match self {
+            Law::Below | Law::Above => self.factor(u),
             Law::Normal | Law::Laplace | Law::Poisson => 1.0,
             Law::Student(freedom) => ((freedom + 1.0) / (freedom + 3.0)).sqrt(),
         }
@@ -117,7 +182,7 @@ impl Law {
     /// The information that a point has of the logarithm of its scale.
     pub(super) fn information_of_scale(self) -> f64 {
         match self {
-            Law::Normal | Law::Poisson => 2.0,
+            Law::Normal | Law::Poisson | Law::Below | Law::Above => 2.0,
             Law::Laplace => 1.0,
             Law::Student(freedom) => 2.0 * freedom / (freedom + 3.0),
         }
@@ -156,13 +221,31 @@ mod tests {
         }
     }
 
+    /// SciPy 1.17: `-2 norm.logcdf(-u)`, and its hazard.
+    #[test]
+    fn limits_have_the_probability_of_the_tail() {
+        for (u, twice, hazard) in [
+            (-3.0, 0.002_701_619_929_496_385, 0.004_437_839_042_125_666),
+            (0.5, 2.351_823_523_187_237_5, 1.141_077_770_368_064_8),
+            (8.0, 70.026_874_319_829_12, 8.121_368_112_236_18),
+            (40.0, 1_609.216_884_027_507_8, 40.024_968_847_210_886),
+        ] {
+            for (law, side) in [(Law::Below, 1.0), (Law::Above, -1.0)] {
+                let found = law.twice(side * u);
+                assert!((found / twice - 1.0).abs() < 1e-10, "{u}: {found} {twice}");
+                let found = law.residual(side * u) * law.factor(side * u);
+                assert!((found / (side * hazard) - 1.0).abs() < 1e-9, "{u}: {found} {hazard}");
+            }
+        }
+    }
+
     /// The scales are those that SciPy finds to be most likely: for Laplace the mean absolute error.
     #[test]
     fn estimated_scales_are_most_likely() {
         for law in [Law::Laplace, Law::Student(4.0), Law::Student(1.5)] {
             let own = all(law, Deviation::Group(0));
             let found = own.fitness(&simulated(0.2), &MEASURED, &WEIGHTS);
-            let root = law.root_information();
+            let root = law.root_information(0.0);
             let at = own.error_weights(&simulated(0.2), &MEASURED, &WEIGHTS).unwrap();
             let scale = WEIGHTS[0] * root / at[0];
             if law == Law::Laplace {
@@ -188,6 +271,8 @@ mod tests {
             (Law::Student(4.0), Deviation::Given),
             (Law::Student(4.0), Deviation::Group(0)),
             (Law::Poisson, Deviation::Given),
+            (Law::Below, Deviation::Given),
+            (Law::Above, Deviation::Given),
         ] {
             let own = all(law, deviation);
             let weights = if law == Law::Poisson { [1.0; 6] } else { WEIGHTS };

@@ -16,7 +16,6 @@ use super::{
 };
 use crate::diag::suggest;
 use crate::elementary;
-use crate::fitness::Law;
 use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::table::significant;
 
@@ -131,7 +130,7 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
             rows: &series.rows,
             first: start,
             has_sigma: series.sigma.is_known(),
-            robust: statistics.robust || series.law != Law::Normal,
+            robust: statistics.robust || !series.is_normal(),
             is_likelihood: matches!(
                 ErrorModel::of(problem),
                 ErrorModel::Computed | ErrorModel::Estimated

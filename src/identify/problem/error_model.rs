@@ -3,7 +3,7 @@
 use super::{Finding, FindingKind, Problem, Role, Series, Severity};
 use crate::diag::Fault;
 use crate::fault;
-use crate::fitness::{Concentrated, Deviation, Fitness, Law};
+use crate::fitness::{Concentrated, Deviation, Fitness};
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -124,7 +124,7 @@ impl ErrorModel {
 
 /// Whether the likelihood of series is no sum of squares though no deviation is estimated.
 fn is_computed(series: &[Series]) -> bool {
-    series.iter().any(|own| matches!(own.sigma, Sigma::Variable(_)) || own.law != Law::Normal)
+    series.iter().any(|own| matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal())
 }
 
 /// Decides about the series without sigma: where sigmas of others are given, or units differ, they
@@ -200,11 +200,13 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
         let computed = (k..series.len()).find(|of| series[*of].role == Role::Deviation(of - k));
         points.extend((0..own.y.len()).map(|point| match (own.role, computed, group) {
             (Role::Deviation(back), ..) => {
-                (series[k - back].law, Deviation::Of(firsts[k - back] + point))
+                (series[k - back].law_of(point), Deviation::Of(firsts[k - back] + point))
             }
-            (_, Some(computed), _) => (own.law, Deviation::Computed(firsts[computed] + point)),
-            (_, _, Some(group)) => (own.law, Deviation::Group(group)),
-            _ => (own.law, Deviation::Given),
+            (_, Some(computed), _) => {
+                (own.law_of(point), Deviation::Computed(firsts[computed] + point))
+            }
+            (_, _, Some(group)) => (own.law_of(point), Deviation::Group(group)),
+            _ => (own.law_of(point), Deviation::Given),
         }));
     }
     if let Some((name, values)) = names.iter().zip(&sizes).find(|(_, values)| values.len() < FEW) {

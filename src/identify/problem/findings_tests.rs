@@ -1,7 +1,7 @@
 //! What a report must say and must not say, for data of known faults.
 
 use super::*;
-use crate::fitness::FITNESSES;
+use crate::fitness::{FITNESSES, Fitness};
 use crate::ga::Mrg32k3a;
 use crate::ga::optimizer::METHODS;
 use crate::registry::{self, Options};
@@ -46,6 +46,11 @@ fn grid(n: usize) -> Vec<f64> {
     (0..n).map(|k| 5.0 * k as f64 / n as f64).collect()
 }
 
+fn made(name: &str) -> Box<dyn Fitness> {
+    let entry = registry::find("fitness", FITNESSES, name).unwrap();
+    (entry.make)(&mut Options::default()).unwrap()
+}
+
 /// A problem of outputs with noise, each with its sigma, searched by least squares near the truth.
 fn problem(
     outputs: &[(Formula, Vec<f64>, Sigma)],
@@ -68,6 +73,7 @@ fn problem(
         relative: Vec::new(),
         sigma: sigma.clone(),
         law: crate::fitness::Law::Normal,
+        censored: Vec::new(),
         column: String::new(),
         x_column: String::new(),
         rows: Vec::new(),
@@ -75,14 +81,11 @@ fn problem(
     });
     let series: Vec<Series> = series.collect();
     let objective = match fitness {
-        Some(name) => {
-            let entry = registry::find("fitness", FITNESSES, name).unwrap();
-            (entry.make)(&mut Options::default()).unwrap()
-        }
+        Some(name) => made(name),
         None if series.iter().any(|own| own.sigma.is_estimated()) => {
             likelihood(&series, 1e-12).unwrap()
         }
-        None => (FITNESSES[0].make)(&mut Options::default()).unwrap(),
+        None => made(FITNESSES[0].name),
     };
     let free = |(k, value): (usize, &f64)| {
         Free::new(format!("p{k}"), "", range, Some(false), Some(1.1 * value)).unwrap()

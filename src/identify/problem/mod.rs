@@ -202,6 +202,8 @@ pub struct Series {
     pub sigma: Sigma,
     /// How the errors are distributed.
     pub law: Law,
+    /// The points of which only a limit was measured, Y, with [`Law::Below`] or [`Law::Above`].
+    pub censored: Vec<(usize, Law)>,
     /// The column of the data that Y was read from.
     pub column: String,
     /// The column that X was read from; empty where there is none.
@@ -220,6 +222,17 @@ impl Series {
             true => self.y_name.clone(),
             false => format!("{} / {}", self.experiment, self.y_name),
         }
+    }
+
+    /// Whether its errors are normal, and all its values measured.
+    pub fn is_normal(&self) -> bool {
+        self.law == Law::Normal && self.censored.is_empty()
+    }
+
+    /// How the error of a point is distributed.
+    pub(super) fn law_of(&self, point: usize) -> Law {
+        let own = self.censored.iter().find(|(own, _)| *own == point);
+        own.map_or(self.law, |(_, law)| *law)
     }
 
     /// Whether its points were measured.
@@ -316,7 +329,7 @@ pub struct Problem {
 impl Problem {
     /// Whether the errors of all series are normal.
     pub(crate) fn is_normal(&self) -> bool {
-        self.series.iter().all(|series| series.law == Law::Normal)
+        self.series.iter().all(Series::is_normal)
     }
 
     /// Number of points of all series.

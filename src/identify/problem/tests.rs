@@ -43,6 +43,7 @@ pub(super) fn problem(
         relative: Vec::new(),
         sigma: Sigma::Unknown,
         law: crate::fitness::Law::Normal,
+        censored: Vec::new(),
         column: String::new(),
         x_column: String::new(),
         rows: Vec::new(),

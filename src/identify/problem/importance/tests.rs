@@ -45,6 +45,7 @@ fn analysed(
             relative: Vec::new(),
             sigma: crate::problem::Sigma::Unknown,
             law: crate::fitness::Law::Normal,
+            censored: Vec::new(),
             column: String::new(),
             x_column: String::new(),
             rows: Vec::new(),

@@ -248,6 +248,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         relative: Vec::new(),
         sigma: Sigma::Given(vec![sd]),
         law: prior.law(),
+        censored: Vec::new(),
         column: String::new(),
         x_column: String::new(),
         rows: Vec::new(),

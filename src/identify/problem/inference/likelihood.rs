@@ -22,7 +22,13 @@ pub struct Likelihood {
 /// logarithm.
 fn logarithms(problem: &Problem) -> f64 {
     let own = problem.inference.logarithmic.iter();
-    own.filter_map(|k| problem.series.get(*k)).flat_map(|series| &series.y).sum()
+    let own = own.filter_map(|k| problem.series.get(*k));
+    // A limit has a probability, not a density.
+    let measured = |series: &'_ Series| {
+        let all = (0..series.y.len()).filter(|k| series.censored.iter().all(|own| own.0 != *k));
+        all.map(|k| series.y[k]).sum::<f64>()
+    };
+    own.map(measured).sum()
 }
 
 /// -log L of the data alone where errors are not normal.

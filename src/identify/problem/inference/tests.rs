@@ -86,6 +86,7 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         relative: Vec::new(),
         sigma: Sigma::Unknown,
         law: crate::fitness::Law::Normal,
+        censored: Vec::new(),
         column: "y".into(),
         x_column: String::new(),
         rows: Vec::new(),

@@ -57,12 +57,14 @@ pub struct Pool {
     shares: Vec<usize>,
     required: Required,
     accuracy: Accuracy,
+    /// How far a step of a descent may move each gene.
+    reach: Vec<f64>,
     /// Descents and the smallest sum of squares at the begin of each round.
     rounds: Vec<(usize, f64)>,
 }
 
 impl Pool {
-    pub fn new(accuracy: Accuracy) -> Pool {
+    pub fn new(accuracy: Accuracy, reach: Vec<f64>) -> Pool {
         Pool {
             descents: Vec::new(),
             joined: Vec::new(),
@@ -71,6 +73,7 @@ impl Pool {
             shares: Vec::new(),
             required: Required::Jacobians,
             accuracy,
+            reach,
             rounds: Vec::new(),
         }
     }
@@ -89,7 +92,8 @@ impl Pool {
         self.refine();
         for (number, start) in starts.into_iter().enumerate() {
             self.active.push(self.descents.len());
-            self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
+            let own = Descent::new(start, self.accuracy, STEPS, COARSE);
+            self.descents.push(own.within(&self.reach));
             self.joined.push(None);
             self.independent.push(number < independent);
         }
@@ -162,7 +166,7 @@ impl Pool {
 
     /// Forgets everything, as the ranges have changed.
     pub fn clear(&mut self) {
-        *self = Pool::new(self.accuracy);
+        *self = Pool::new(self.accuracy, std::mem::take(&mut self.reach));
     }
 
     /// The descent with the smallest sum of squares.

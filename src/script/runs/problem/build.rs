@@ -18,7 +18,7 @@ use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::fmi::import::Imported;
 use crate::ga::optimizer::METHODS;
 use crate::identify::Descriptions;
-use crate::identify::fitness::{FITNESSES, Fitness, Law};
+use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::{Cause, adjust};
 use crate::identify::problem::{
     Experiment, Free, Inference, LIKELIHOOD, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS,
@@ -419,8 +419,7 @@ fn objectives(
     series: &[Series],
     noise: f64,
 ) -> Result<Vec<Objective>, Vec<Diagnostic>> {
-    let is_computed =
-        |own: &Series| matches!(own.sigma, Sigma::Variable(_)) || own.law != Law::Normal;
+    let is_computed = |own: &Series| matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal();
     if series.iter().any(|own| own.sigma.is_estimated() || is_computed(own)) {
         return likelihood_alone(file, series, noise).map_err(alone);
     }

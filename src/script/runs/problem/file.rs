@@ -222,6 +222,9 @@ pub(super) struct ColumnEntry {
     /// How the errors are distributed: `normal`, `lognormal`, `laplace`, `loglaplace`, `student` or
     /// `poisson`.
     pub error: Option<String>,
+    /// Limits of detection, and of saturation: values at or beyond them are known to be there only.
+    pub below: Option<LimitEntry>,
+    pub above: Option<LimitEntry>,
     /// Those of the distribution of Student.
     pub degrees_of_freedom: Option<f64>,
     /// Seconds by which it is measured later: a number or a parameter.
@@ -229,6 +232,13 @@ pub(super) struct ColumnEntry {
     /// What its values are multiplied with, to see whether they fit better so.
     #[serde(skip)]
     pub tried: Option<f64>,
+}
+
+/// A limit of measured values: a number, or the name of a column.
+#[derive(Debug, Clone)]
+pub(super) enum LimitEntry {
+    Number(f64),
+    Column(String),
 }
 
 /// A number, or the name of a parameter of the problem that is not one of the model.
@@ -473,6 +483,8 @@ impl ColumnEntry {
             weight: None,
             sigma: None,
             error: None,
+            below: None,
+            above: None,
             degrees_of_freedom: None,
             delay: None,
             tried: None,

@@ -2,9 +2,9 @@
 //! is written in none of them, the message says what was expected.
 
 use super::file::{
-    BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, NoiseEntry, NoiseTable, OneOrMany,
-    OperatorEntry, ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry,
-    SetEntry, SigmaEntry, ValueEntry, WeightEntry,
+    BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, LimitEntry, NoiseEntry, NoiseTable,
+    OneOrMany, OperatorEntry, ParameterEntry, ParameterTable, PriorEntry, PriorNumbers,
+    SegmentsEntry, SetEntry, SigmaEntry, ValueEntry, WeightEntry,
 };
 use indexmap::IndexMap;
 use serde::de::value::MapAccessDeserializer;
@@ -209,6 +209,15 @@ in_forms!(
         truth: Some(BandsEntry::Requested),
         list: Some(BandsEntry::Variables),
         ..Forms::new("`true`, `false`, or a list of variables")
+    }
+);
+
+in_forms!(
+    LimitEntry,
+    Forms::<_> {
+        number: Some(LimitEntry::Number),
+        text: Some(LimitEntry::Column),
+        ..Forms::new("a number, or the name of a column")
     }
 );
 

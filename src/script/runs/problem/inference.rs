@@ -179,6 +179,18 @@ pub(super) fn error_laws(entry: &ExperimentEntry) -> Result<Vec<ErrorLaw>, Diagn
 /// Measured values that are no counts.
 pub(super) fn distribute(series: &mut Series, own: &ErrorLaw) -> Result<(), Diagnostic> {
     series.law = own.law;
+    if own.law != Law::Normal && !series.censored.is_empty() {
+        let fault = fault!(
+            BAD_OPTION,
+            "`{}` has values beyond a limit, which are supported with normal errors only",
+            series.y_name;
+            help: "use the error \"normal\" or \"lognormal\", or remove `below` and `above`"
+        );
+        return Err(fault.at(own.place));
+    }
+    if series.sigma == Sigma::Unknown && !series.censored.is_empty() {
+        series.sigma = Sigma::Estimated;
+    }
     match own.law {
         Law::Poisson => {
             let is_count = |y: &f64| *y >= 0.0 && y.fract() == 0.0;
@@ -193,7 +205,7 @@ pub(super) fn distribute(series: &mut Series, own: &ErrorLaw) -> Result<(), Diag
             }
             series.sigma = Sigma::Given(vec![1.0; series.y.len()]);
         }
-        Law::Normal => {}
+        Law::Normal | Law::Below | Law::Above => {}
         Law::Laplace | Law::Student(_) if series.sigma == Sigma::Unknown => {
             series.sigma = Sigma::Estimated;
         }

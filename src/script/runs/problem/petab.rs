@@ -116,6 +116,8 @@ fn check_experiment(entry: &ExperimentEntry) -> Result<(), Diagnostic> {
         for (is_there, key, what) in [
             (output.delay.is_some(), "delay", "a delay"),
             (output.weight.is_some(), "weight", "a weight"),
+            (output.below.is_some(), "below", "a limit of detection"),
+            (output.above.is_some(), "above", "a limit of saturation"),
         ] {
             if is_there {
                 return Err(unsayable(what).at(at(key)));
@@ -257,7 +259,7 @@ impl Tables {
             (Law::Normal, true) => "log-normal",
             (Law::Laplace, false) => "laplace",
             (Law::Laplace, true) => "log-laplace",
-            (Law::Student(_) | Law::Poisson, _) => {
+            (Law::Student(_) | Law::Poisson | Law::Below | Law::Above, _) => {
                 return Err(unsayable("an error of Student or Poisson"));
             }
         };

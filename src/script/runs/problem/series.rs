@@ -3,7 +3,7 @@
 
 use super::data::{self, Measured, Notes};
 use super::fault_codes;
-use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
+use super::file::{ColumnEntry, ExperimentEntry, LimitEntry, SigmaEntry};
 use super::{sigma, time_axis};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
@@ -95,6 +95,41 @@ impl Comparison<'_> {
         )
     }
 
+    /// The measured values of these rows, and the points at or beyond limits, whose values are the limits.
+    fn censored(
+        &self,
+        y_name: &str,
+        requested: &ColumnEntry,
+        (rows, measured): (&[usize], &Measured),
+    ) -> Result<(Vec<f64>, Vec<(usize, Law)>), Fault> {
+        let mut y: Vec<f64> = rows.iter().map(|row| measured.values[*row]).collect();
+        let mut found = Vec::new();
+        for (entry, law) in [(&requested.below, Law::Below), (&requested.above, Law::Above)] {
+            let limits: Vec<f64> = match entry {
+                None => continue,
+                Some(LimitEntry::Number(limit)) => vec![*limit; y.len()],
+                Some(LimitEntry::Column(name)) => {
+                    let column = self.table.column(name)?;
+                    let limit =
+                        |row: &usize| column.values.get(*row).map(|own| own * measured.factor);
+                    rows.iter().map(|row| limit(row).unwrap_or(f64::NAN)).collect()
+                }
+            };
+            for (k, (y, limit)) in y.iter_mut().zip(limits).enumerate() {
+                let is_beyond = if law == Law::Below { *y <= limit } else { *y >= limit };
+                // A row without a limit has a value.
+                if is_beyond && found.iter().any(|(own, _)| *own == k) {
+                    bail!(BAD_OPTION, "`{y_name}` is below one limit and above the other"; help: "give the lower limit as `below`");
+                }
+                if is_beyond {
+                    *y = limit;
+                    found.push((k, law));
+                }
+            }
+        }
+        Ok((y, found))
+    }
+
     fn output(
         &self,
         y_name: &str,
@@ -133,7 +168,7 @@ impl Comparison<'_> {
         let values = rows.iter().map(|row| measured.values[*row]);
         note_temperature((y_name, "outputs"), &own_unit, (requested, &column), values, notes);
         note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
-        let weight = self.weight(y_name, requested)?;
+        let (y, censored) = self.censored(y_name, requested, (&rows, &measured))?;
         Ok(Series {
             role: Role::Data,
             experiment: self.experiment.to_owned(),
@@ -143,11 +178,12 @@ impl Comparison<'_> {
             x_unit: self.unit(self.x_name).symbol,
             file: self.entry.data.display().to_string(),
             x: rows.iter().map(|row| self.x[*row]).collect(),
-            y: rows.iter().map(|row| measured.values[*row]).collect(),
-            weight,
+            y,
+            weight: self.weight(y_name, requested)?,
             relative: Vec::new(),
             sigma,
             law: Law::Normal,
+            censored,
             column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
             x_column: self.x_column.to_owned(),
             rows: rows.iter().map(|row| first_row + row).collect(),

@@ -102,6 +102,22 @@ fn laplace_priors_hold_parameters_at_their_centre() {
     assert!((own - 1.0).abs() < 1e-3, "{}", found.text());
 }
 
+/// `scipy.stats.norm` with logcdf for two values below 1.5 and logsf for one above 4.
+#[test]
+fn values_beyond_limits_have_the_probability_of_that() {
+    let measured = [0.3, 2.0, 3.0, 2.5, 2.2, 1.5, 9.0, 2.1, 1.8, 2.4];
+    let with = |more: &str| format!("{more}, below = 1.5, above = 4");
+    let found = fitted(" }", &with("sigma = 0.8"), &measured);
+    is(&found, 2.241_745_996_475_219_5, Some(0.259_813_161_8), 13.340_797_160_141_873);
+    let found = fitted(" }", &with("sigma = \"estimate\""), &measured);
+    is(&found, 2.225_314_038_349_760_3, None, 13.080_638_727_881_94);
+    let found =
+        fitted(" }\ns = { min = 0.01, max = 9 }", &with("sigma = \"deviation\""), &measured);
+    is(&found, 2.225_314_038_349_760_3, None, 13.080_638_727_881_94);
+    let found = fitted(" }", &with("sigma = 0.3, error = \"lognormal\""), &measured);
+    is(&found, 2.163_873_833_417_892_6, None, 12.999_453_331_190_427);
+}
+
 /// Densities of priors are those of the coordinate in which they are given.
 #[test]
 fn constants_of_priors_are_in_the_likelihood() {
