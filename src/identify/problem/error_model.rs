@@ -195,7 +195,11 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
             })
         });
         if let Some(group) = group {
-            sizes[group].extend(own.weights().iter().zip(&own.y).map(|(weight, y)| weight * y));
+            // A limit alone says nothing about the size of errors.
+            let is_measured = |point: &usize| own.censored.iter().all(|(of, _)| of != point);
+            let weights = own.weights();
+            let measured = (0..own.y.len()).filter(is_measured);
+            sizes[group].extend(measured.map(|point| weights[point] * own.y[point]));
         }
         let computed = (k..series.len()).find(|of| series[*of].role == Role::Deviation(of - k));
         points.extend((0..own.y.len()).map(|point| match (own.role, computed, group) {

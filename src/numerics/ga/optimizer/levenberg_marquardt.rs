@@ -506,3 +506,22 @@ impl Optimizer for Descent {
         vec![self.report()]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_reach_a_factor_of_100_on_logarithmic_scales() {
+        let scale = |min, max, logarithmic| Scale { min, max, logarithmic, unit: String::new() };
+        let all = [
+            scale(1e-5, 1e3, true),
+            scale(-1e3, -1e-5, true),
+            scale(1.0, 10.0, true),
+            scale(1e-5, 1e3, false),
+        ];
+        let found = reach(&all);
+        assert!((found[0] - 0.25).abs() < 1e-12 && (found[1] - 0.25).abs() < 1e-12, "{found:?}");
+        assert!(found[2] > 1.0 && found[3] == 1.0, "{found:?}");
+    }
+}

@@ -320,3 +320,19 @@ fn limit(x: f64, step: f64, reach: f64) -> f64 {
     let own = if room <= AT { room } else { TOWARDS_BOUND * room };
     own.min(reach).max(0.0).copysign(step)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a gene that the residuals hardly depend on, the scale allows a step across its range.
+    #[test]
+    fn no_gene_moves_farther_than_its_reach() {
+        let model = LinearModel::new(&[1.0, 1.0], &[10.0, 0.0, 0.0, 1e-3], 2, 1e-9);
+        let scales = [10.0, 1e-3];
+        let far = model.step(&[0.5, 0.5], (&scales, &[1.0, 1.0]), 5.0).unwrap();
+        let near = model.step(&[0.5, 0.5], (&scales, &[1.0, 0.2]), 5.0).unwrap();
+        assert!(far.by[1] < -0.4, "{:?}", far.by);
+        assert!((near.by[1] + 0.2).abs() < 1e-12 && near.by[0] < -0.05, "{:?}", near.by);
+    }
+}

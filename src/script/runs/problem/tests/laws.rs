@@ -1,6 +1,6 @@
 //! Errors and priors that are not normal, and what their likelihood is.
 
-use super::{Solution, solved};
+use super::*;
 
 const MODEL: &str = "model M\n  parameter Real p = 1;\n  parameter Real s = 1;\n  Real a = p;\n  \
                      Real deviation = s;\nend M;\n";
@@ -116,6 +116,25 @@ fn values_beyond_limits_have_the_probability_of_that() {
     is(&found, 2.225_314_038_349_760_3, None, 13.080_638_727_881_94);
     let found = fitted(" }", &with("sigma = 0.3, error = \"lognormal\""), &measured);
     is(&found, 2.163_873_833_417_892_6, None, 12.999_453_331_190_427);
+}
+
+/// Two values beside limits do not have a scale.
+#[test]
+fn limits_alone_have_no_scale() {
+    let files = [
+        (
+            "p.toml",
+            "model = \"M\"\nfiles = [\"M.mo\"]\n[parameters]\np = { min = 0.1, max = 9 }\n\
+             [[experiment]]\ndata = \"d.csv\"\noutputs = { a = { column = \"a\", below = 1 } }\n"
+                .to_owned(),
+        ),
+        ("M.mo", MODEL.into()),
+        ("d.csv", "time,a\n0,0.5\n1,0.6\n2,2\n3,3\n4,0\n".into()),
+    ];
+    let mut session = Session::new(Box::new(world(&files)));
+    let errors = solve(&mut session, Path::new("p.toml"), &RunOptions::default()).unwrap_err();
+    let said = format!("{errors:?}");
+    assert!(said.contains("cannot be estimated from 2 points"), "{said}");
 }
 
 /// Densities of priors are those of the coordinate in which they are given.
