@@ -19,6 +19,8 @@ use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::table::significant;
 
+/// More outliers than this are named by half as many.
+const MOST_NAMED: usize = 20;
 /// Probability of any false alarm among the residual tests of a solution.
 const FAMILY: f64 = 0.01;
 /// Tests of each series: runs, correlation, mean, signs, spread twice, distribution, outliers.
@@ -435,12 +437,18 @@ fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
         .map(|(row, r)| format!("row {row} ({} standard deviations)", significant(*r, 2)))
         .collect();
     let one = rows.len() == 1;
+    let named = match text.len() > MOST_NAMED {
+        true => {
+            let left = text.len() - MOST_NAMED / 2;
+            format!("{} and {left} more rows", text[..MOST_NAMED / 2].join(", "))
+        }
+        false => text.join(", "),
+    };
     Some(
         Finding::new(
             FindingKind::Outlier,
             format!(
-                "{} of {} {} far from the fit while the others agree with it: check {}{}.",
-                text.join(", "),
+                "{named} of {} {} far from the fit while the others agree with it: check {}{}.",
                 own.label,
                 if one { "is" } else { "are" },
                 if one { "this outlier" } else { "these outliers" },

@@ -494,3 +494,54 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     }
     assert!(all == 45 && count >= 40, "{count} of {all} intervals hold the truth");
 }
+
+/// By NumPy and SciPy: the extended Kalman filter integrated by DOP853 with 1e-12, the smoother of Rauch,
+/// Tung and Striebel about it, and three steps of the filter without samples.
+#[test]
+fn nonlinear_models_are_smoothed_and_predicted_from_their_filtered_states() {
+    let tanks = "model Tanks
+  parameter Real k1 = 0.3, k2 = 0.2;
+  input Real u;
+  Real x(start = 1, fixed = true), y(start = 1.5, fixed = true);
+equation
+  der(x) = u - k1*sqrt(x);
+  der(y) = k1*sqrt(x) - k2*sqrt(y);
+end Tanks;
+";
+    let problem = "model=\"Tanks\"
+files=[\"M.mo\"]
+[noise]
+x={value=0.1,initial=0.3}
+y={value=0.05,initial=0.1}
+[[experiment]]
+data=\"d.csv\"
+tolerance=1e-11
+outputs.y={column=\"y\",sigma=0.05}
+inputs.u={column=\"u\",interpolation=\"hold\"}
+";
+    let levels = "1.5 1.5408 1.5622 1.6763 1.766 1.8881 1.986 2.1702 2.2989 2.3456 2.4297 2.4727 2.5133 2.5345 2.4963 2.5128 2.4172 2.3595 2.3916 2.3819";
+    let mut data = "time [s],y,u\n".to_owned();
+    for (k, level) in levels.split_whitespace().enumerate() {
+        let u = if (k / 8) % 2 == 0 { 0.5 } else { 0.2 };
+        writeln!(data, "{k},{level},{u}").unwrap();
+    }
+    let folder = folder(&[("M.mo", tanks), ("d.csv", &data), ("p.toml", problem)]);
+    let (code, out, error) =
+        gapi(&folder, &["estimate", "p.toml", "--steps", "3", "--output", "e.csv"]);
+    assert_eq!(code, 0, "{out}{error}");
+    let table = std::fs::read_to_string(folder.path().join("e.csv")).unwrap();
+    for (name, row, expected) in [
+        ("smoothed(x)", 0, 0.8828898876619791),
+        ("sd(smoothed(x))", 0, 0.2015515612851111),
+        ("smoothed(x)", 5, 1.672047600525735),
+        ("sd(smoothed(x))", 5, 0.14206276366778867),
+        ("smoothed(x)", 12, 1.225028699918929),
+        ("sd(smoothed(x))", 12, 0.1338361172792065),
+        ("predicted over 3(y)", 3, 1.7476585134762848),
+        ("sd(predicted over 3(y))", 3, 0.13558379238211507),
+        ("predicted over 3(y)", 19, 2.447351305614281),
+        ("sd(predicted over 3(y))", 19, 0.11838283981506073),
+    ] {
+        assert_near(column(&table, name)[row], expected, 1e-9);
+    }
+}

@@ -409,7 +409,9 @@ fn the_next_frequency_counts_both_parts() {
         R = { min = 0.01, max = 1 }\nC = { min = 0.1, max = 10 }\n[design]\nrange = [0.01, 100]\n\
         [[experiment]]\ndata = \"d.csv\"\nspectrum = { input = \"i\", output = \"v\" }\n\
         outputs = { real = { column = \"re\", sigma = 1e-3 }, imaginary = { column = \"im\", sigma = 1e-3 } }\n";
-    let (_, text) = solved(&[("M.mo", cell), ("d.csv", &data), ("p.toml", problem)]);
+    let problem = problem.replace("spectrum =", "steady_state = true\nspectrum =");
+    let (_, text) = solved(&[("M.mo", cell), ("d.csv", &data), ("p.toml", &problem)]);
+    assert!(!text.contains("has no data"), "{text}");
     // |dZ/dC| = ωR²/(1 + (ωRC)²) is largest at 1/(2πRC) = 1.6 Hz.
     assert!(text.contains("points of the spectrum between frequency = 1"), "{text}");
     assert!(text.contains("would narrow the 95 % interval of C"), "{text}");

@@ -376,7 +376,7 @@ impl Source<'_> {
         }
         if entry.steady_state {
             let class = enclosing.load(session, &base, here)?;
-            let plain = simulation::translated(session, &class)?.program.clone();
+            let plain = without_data(session, &class)?;
             setting.avoid_zeros(&parameters, &plain, &mut enclosing);
             let sums = dynamics::steady(file, entry, plain.sorted(), &mut enclosing);
             let sums = sums.at(entry.places.at(&["steady_state"])).map_err(|error| vec![error])?;
@@ -480,6 +480,14 @@ fn types_of(
         (false, true) => Ok(simulation::flattened(session, model).ok()),
         (false, false) => Ok(None),
     }
+}
+
+/// A model whose inputs will follow data or oscillate: that they have none is not said.
+fn without_data(session: &mut Session, class: &str) -> Result<Arc<Program>, Vec<Diagnostic>> {
+    let before = std::mem::replace(&mut session.models.inputs_come_later, true);
+    let plain = simulation::translated(session, class);
+    session.models.inputs_come_later = before;
+    Ok(plain?.program.clone())
 }
 
 /// The relative error of values that are simulated so. Exact steps have none whatever the tolerance is:
