@@ -1,8 +1,8 @@
 //! What is wrong, as Python's exception with its place and what to do.
 
-use gapilib::{Diagnostic, Fault, Severity};
 use gapilib::internals::diag::render::render;
 use gapilib::internals::source::{SourceMap, Span};
+use gapilib::{Diagnostic, Fault, Severity};
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;

@@ -1,6 +1,7 @@
 //! Functional mock-up units: of models, and of files.
 
 use crate::errors::{Reported, raised, raised_fault};
+use crate::inputs::Inputs;
 use crate::model::{Simulation, SimulationResult, ended, finished};
 use crate::session::{Answer, Session, checked};
 use crate::worker::{Worker, written};
@@ -35,7 +36,9 @@ fn form(version: u8, kind: &str) -> PyResult<(Version, Kinds)> {
     let version = match version {
         2 => Version::V2,
         3 => Version::V3,
-        other => return Err(PyValueError::new_err(format!("there is no FMI {other}: write 2 or 3"))),
+        other => {
+            return Err(PyValueError::new_err(format!("there is no FMI {other}: write 2 or 3")));
+        }
     };
     let (model_exchange, co_simulation) = match kind {
         "me" => (true, false),
@@ -116,8 +119,7 @@ enum Value {
 struct Request {
     options: SimulationOptions,
     parameters: Vec<(String, Value)>,
-    inputs: Option<PathBuf>,
-    interpolation: Option<String>,
+    inputs: Option<Inputs>,
 }
 
 #[pymethods]
@@ -159,8 +161,8 @@ impl Fmu {
     }
 
     /// Simulates it, with values for parameters and start values by their names (numbers, bools, strings,
-    /// literals of enumerations by their names), and inputs that follow the columns of a file; between its
-    /// rows they hold or are linear, as `interpolation` says. What is None is taken from its description.
+    /// literals of enumerations by their names), and inputs that follow the columns of a file or of
+    /// data in memory; between the rows they hold or are linear, as `interpolation` says. What is None is taken from its description.
     #[pyo3(signature = (parameters=None, *, start=None, stop=None, intervals=None, interval=None,
         tolerance=None, method=None, variables=None, inputs=None,
         interpolation=None))]
@@ -176,7 +178,7 @@ impl Fmu {
         tolerance: Option<f64>,
         method: Option<String>,
         variables: Option<Vec<String>>,
-        inputs: Option<PathBuf>,
+        inputs: Option<Bound<'_, PyAny>>,
         interpolation: Option<String>,
     ) -> PyResult<SimulationResult> {
         let options = SimulationOptions {
@@ -189,7 +191,7 @@ impl Fmu {
             ..SimulationOptions::default()
         };
         let parameters = parameters.into_iter().flatten().collect();
-        let request = Request { options, parameters, inputs, interpolation };
+        let request = Request { options, parameters, inputs: Inputs::of(inputs, interpolation)? };
         let unit = self.unit.clone();
         let (answer, errors) =
             self.worker.call_quietly(py, move |engine| simulated(engine, &unit, request))?;
@@ -214,9 +216,8 @@ fn simulated(engine: &mut Engine, unit: &Arc<Imported>, request: Request) -> Sim
     }
     let samples = match &request.inputs {
         None => Vec::new(),
-        Some(path) => {
-            engine.grant_input(path);
-            let given = (path.as_path(), request.interpolation.as_deref());
+        Some(inputs) => {
+            let given = inputs.open(engine);
             let followed = problem::inputs_of(engine, unit, given).map_err(|error| vec![error]);
             checked(engine, followed).map_err(|errors| (errors, None))?.samples
         }

@@ -15,8 +15,15 @@ use std::path::PathBuf;
 
 /// The solution as JSON, as text, as the report's page; its figures as SVG and its tables as CSV by
 /// their names; the calibrated model, and the files of its classes.
-type Solved =
-    (String, String, String, IndexMap<String, String>, IndexMap<String, String>, String, Vec<PathBuf>);
+type Solved = (
+    String,
+    String,
+    String,
+    IndexMap<String, String>,
+    IndexMap<String, String>,
+    String,
+    Vec<PathBuf>,
+);
 
 /// What is solved, and where its results go.
 struct Task {

@@ -8,6 +8,7 @@ mod errors;
 mod fmu;
 mod forked;
 mod identification;
+mod inputs;
 mod model;
 mod operators;
 mod run;

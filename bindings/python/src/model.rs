@@ -1,18 +1,20 @@
 //! Translated models and the results of their simulations.
 
 use crate::errors::{Reported, raised, raised_fault, reported};
+use crate::inputs::Inputs;
 use crate::session::{Session, checked};
 use crate::simulator::{Points, Simulator};
 use crate::worker::{Worker, written};
 use gapilib::Fault;
-use gapilib::internals::identify::{CompiledModel, Model as _};
-use gapilib::results::{self, ResultTable, Values};
 use gapilib::Session as Engine;
+use gapilib::internals::identify::{CompiledModel, Model as _};
 use gapilib::internals::script::models::final_state::FinalState;
 use gapilib::internals::script::models::simulation::{
     self, Simulated, SimulationOptions, Translated, Unfinished,
 };
+use gapilib::internals::script::runs::problem::{self, Driven};
 use gapilib::internals::sim::Statistics;
+use gapilib::results::{self, ResultTable, Values};
 use indexmap::IndexMap;
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
@@ -47,6 +49,7 @@ struct SimulationRequest {
     options: SimulationOptions,
     parameters: Vec<(String, f64)>,
     from: Option<(Arc<ResultTable>, Option<f64>)>,
+    inputs: Option<Inputs>,
 }
 
 #[pymethods]
@@ -130,10 +133,13 @@ impl Model {
         Ok(dict)
     }
 
-    /// Simulates it, with values for parameters and start values by their names. What is None is
-    /// taken from the experiment annotation.
+    /// Simulates it, with values for parameters and start values by their names, and inputs that follow
+    /// the columns of a file or of data in memory that have their names; between the rows they hold or
+    /// are linear, as `interpolation` says. What is None is taken from the experiment annotation, the end
+    /// also from the data.
     #[pyo3(signature = (parameters=None, *, start=None, stop=None, intervals=None, interval=None,
-        tolerance=None, method=None, step=None, variables=None, initial=None, initial_time=None))]
+        tolerance=None, method=None, step=None, variables=None, initial=None, initial_time=None,
+        inputs=None, interpolation=None))]
     #[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
     fn simulate(
         &self,
@@ -149,6 +155,8 @@ impl Model {
         variables: Option<Vec<String>>,
         initial: Option<PyRef<'_, SimulationResult>>,
         initial_time: Option<f64>,
+        inputs: Option<Bound<'_, PyAny>>,
+        interpolation: Option<String>,
     ) -> PyResult<SimulationResult> {
         let options = SimulationOptions {
             start,
@@ -165,6 +173,7 @@ impl Model {
             options,
             parameters: parameters.into_iter().flatten().collect(),
             from: initial.map(|result| (result.table.clone(), initial_time)),
+            inputs: Inputs::of(inputs, interpolation)?,
         };
         let model = self.translated.clone();
         let (answer, errors) =
@@ -266,9 +275,24 @@ fn simulated(
 ) -> Simulation {
     let fault = |fault: Fault| (vec![Reported::fault(fault)], None);
     // Values that were set before do not count.
-    let model = simulation::translate_anew(engine, &model.problem);
+    let driven = match &request.inputs {
+        None => None,
+        Some(inputs) => {
+            let (path, interpolation) = inputs.open(engine);
+            let driven = problem::driven(engine, &model.problem, path, interpolation);
+            Some(checked(engine, driven).map_err(|errors| (errors, None))?)
+        }
+    };
+    let class = driven.as_ref().map_or(&*model.problem, |driven| &*driven.class);
+    let model = simulation::translate_anew(engine, class);
     let model = checked(engine, model).map_err(|errors| (errors, None))?;
     let mut options = request.options;
+    options.takes_exact_steps = driven.is_some();
+    if let Some(driven) = &driven
+        && model.program.experiment().stop_time.is_none()
+    {
+        options.stop.get_or_insert(driven.last);
+    }
     if let Some((table, time)) = request.from {
         let time = time.or(table.time.last().copied()).unwrap_or(0.0);
         let state = FinalState::in_result(&model, &table, time).map_err(fault)?;
@@ -278,7 +302,12 @@ fn simulated(
     for (name, value) in &request.parameters {
         engine.set_parameter(name, *value).map_err(fault)?;
     }
-    let done = simulation::simulate(engine, &model, &options);
+    let mut done = simulation::simulate(engine, &model, &options);
+    if driven.is_some()
+        && let Ok(simulated) = &mut done
+    {
+        Driven::without_own_inputs(&mut simulated.table);
+    }
     ended(engine, done)
 }
 

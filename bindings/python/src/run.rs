@@ -3,9 +3,9 @@
 use crate::errors::{Reported, raised};
 use crate::session::{dict_of, ended, owned_variables};
 use crate::worker::{Worker, written};
+use gapilib::Value;
 use gapilib::embedding::Embedding;
 use gapilib::{Journaling, Options, Permissions};
-use gapilib::Value;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -156,7 +156,11 @@ impl Optimizer {
         let count = batch.len();
         let objectives: Vec<f64> = flat(fitness)?
             .into_iter()
-            .map(|value| if value.is_finite() { value } else { gapilib::internals::ga::FAILED_FITNESS })
+            .map(
+                |value| {
+                    if value.is_finite() { value } else { gapilib::internals::ga::FAILED_FITNESS }
+                },
+            )
             .collect();
         let residuals = residuals.map(flat).transpose()?.unwrap_or_default();
         let mut jacobians = jacobians.map(flat).transpose()?.unwrap_or_default();
@@ -166,7 +170,8 @@ impl Optimizer {
         }
         let required = search.required();
         let n_residuals = residuals.len() / count;
-        if required >= Required::Residuals && (residuals.is_empty() || residuals.len() % count != 0) {
+        if required >= Required::Residuals && (residuals.is_empty() || residuals.len() % count != 0)
+        {
             return Err(PyValueError::new_err(
                 "this question wants `residuals`, a row for each individual",
             ));

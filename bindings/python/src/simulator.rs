@@ -5,7 +5,9 @@ use crate::forked::{AtWork, Own};
 use crate::values;
 use crate::watch::Watched;
 use gapilib::Fault;
-use gapilib::internals::identify::problem::{Experiment, Failed, ModelSimulator, Observation, Simulate};
+use gapilib::internals::identify::problem::{
+    Experiment, Failed, ModelSimulator, Observation, Simulate,
+};
 use gapilib::internals::identify::{CompiledModel, Model as _};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;

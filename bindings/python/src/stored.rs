@@ -1,8 +1,8 @@
 //! Results as Python's `pickle` and `copy` keep them: the way to other processes.
 
 use crate::model::SimulationResult;
-use gapilib::results::{ResultTable, Series, Values};
 use gapilib::internals::sim::Statistics;
+use gapilib::results::{ResultTable, Series, Values};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,7 +1,7 @@
 //! Values of scripts as Python's, and back.
 
-use gapilib::internals::value::{ArrayValue, Elements, EnumerationValue};
 use gapilib::Value;
+use gapilib::internals::value::{ArrayValue, Elements, EnumerationValue};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

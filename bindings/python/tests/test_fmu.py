@@ -44,6 +44,12 @@ def test_a_unit_is_fitted(decay, tmp_path):
     }
     fit = gapilib.identify(problem, folder=tmp_path, allow_external=True)
     assert fit.parameters["k"] == pytest.approx(2.5, abs=1e-2)
+    # The unit of a session is fitted there, and simulated with the values found.
+    unit = gapilib.Session(allow_external=True).fmu(tmp_path / "decay.fmu")
+    of_session = gapilib.identify({**problem, "model": unit})
+    assert of_session.parameters == fit.parameters
+    for own in [fit, of_session]:
+        assert own.simulate(stop=1.0)["x"][-1] == pytest.approx(np.exp(-own.parameters["k"]), rel=1e-4)
 
 
 @needs_runtime

@@ -138,3 +138,24 @@ def test_scipy_fits_with_exact_derivatives(decay):
         lambda p: simulator(p) - measured, [1.0, 1.0], jac=lambda p: simulator.jacobian(p)[1]
     )
     np.testing.assert_allclose(fit.x, [2.1, 1.3], rtol=1e-6)
+
+
+def test_inputs_follow_data(session):
+    session.load_text(
+        "model Lag input Real u; Real x(start = 0, fixed = true); equation der(x) = u - x; end Lag;"
+    )
+    model = session.model("Lag")
+    times = np.linspace(0, 2, 21)
+    result = model.simulate(inputs={"time": times, "u": times}, interpolation="linear", tolerance=1e-9)
+    # The end is that of the data; the response to a ramp.
+    assert result.time[-1] == 2.0 and "u" in result
+    assert result["x"][-1] == pytest.approx(2 - 1 + np.exp(-2.0), rel=1e-6)
+    held = model.simulate(inputs={"time": [0.0, 1.0, 2.0], "u": [1.0, 0.0, 0.0]}, interpolation="hold", tolerance=1e-9)
+    assert held["x"][-1] == pytest.approx((1 - np.exp(-1.0)) * np.exp(-1.0), rel=1e-5)
+    np.savetxt("u.csv", np.column_stack([times, times]), delimiter=",", header="time,u", comments="")
+    by_file = model.simulate(inputs="u.csv", interpolation="linear", tolerance=1e-9)
+    assert by_file["x"][-1] == result["x"][-1]
+    # A later simulation has none.
+    assert model.simulate(stop=1.0)["x"][-1] == 0.0
+    with pytest.raises(gapilib.GapilibError, match="u"):
+        model.simulate(inputs={"time": times, "v": times})

@@ -840,6 +840,14 @@ fn a_wrong_token_is_said_by_the_unit() {
         let help = format!("which has the {name} `{{other}}`; it has no folder `resources`");
         let text = one_line(&errors);
         assert!(text.contains("makes no instance: wrong") && text.contains(&help), "{errors}");
+        // A fit of it ends the same way.
+        let problem = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+                       [[experiment]]\ndata = \"data.csv\"\noutputs = { y = \"y\" }\n";
+        fs::write(here.path().join("fit.toml"), problem).expect("written");
+        fs::write(here.path().join("data.csv"), "time,y\n0,1\n1,2\n2,3\n").expect("written");
+        let (code, out, errors) = gapi(&here, &["identify", "fit.toml", "--allow-external"]);
+        assert!(code == 1 && !errors.contains("panicked"), "{out}{errors}");
+        assert!(one_line(&errors).contains("makes no instance: wrong"), "{out}{errors}");
     }
 }
 

@@ -139,6 +139,8 @@ class Model:
         variables: Optional[Sequence[str]] = None,
         initial: Optional[SimulationResult] = None,
         initial_time: Optional[float] = None,
+        inputs: Any = None,
+        interpolation: Optional[str] = None,
     ) -> SimulationResult: ...
     def simulator(
         self,
@@ -185,7 +187,7 @@ class Fmu:
         tolerance: Optional[float] = None,
         method: Optional[str] = None,
         variables: Optional[Sequence[str]] = None,
-        inputs: Optional[_Path] = None,
+        inputs: Any = None,
         interpolation: Optional[str] = None,
     ) -> SimulationResult: ...
 
