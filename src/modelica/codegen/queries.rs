@@ -47,6 +47,12 @@ impl Program {
         &self.sorted.dae.warnings
     }
 
+    /// The variables that are solved for between events, and the iteration variables of loops.
+    pub(crate) fn solved_variables(&self) -> impl Iterator<Item = VarId> + '_ {
+        let assigned = self.sequence.iter().map(|assignment| assignment.variable);
+        assigned.chain(self.continuous.iteration.iter().copied())
+    }
+
     /// The name of an unknown of the integrator.
     pub fn unknown_name(&self, unknown: usize) -> Option<&Arc<str>> {
         self.continuous.unknowns.get(unknown).map(|v| &self.sorted.dae.variable(*v).name)

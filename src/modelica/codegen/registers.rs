@@ -86,7 +86,7 @@ impl Registers {
         &self.functions
     }
 
-    pub(crate) fn n_variables(&self) -> usize {
+    pub(super) fn n_variables(&self) -> usize {
         self.n_variables
     }
 

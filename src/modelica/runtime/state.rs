@@ -112,12 +112,15 @@ pub(super) struct LoopState {
     pub(super) full_pattern: OnceLock<Pattern>,
 }
 
-/// Values of variables, with the time and the unknowns of the integrator that they were solved for.
+/// Values of variables that were solved for, with the time, the unknowns of the integrator and the
+/// relations that they follow from.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SolutionAtEvent {
     pub(super) time: f64,
     pub(super) y: Vec<f64>,
-    pub(super) variables: Vec<f64>,
+    pub(super) relations: Vec<f64>,
+    /// Of the variables that the sequence assigns, and of the iteration variables.
+    pub(super) solved: Vec<f64>,
 }
 
 /// What delays and pipes remember.

@@ -209,31 +209,38 @@ impl System {
     /// Keeps a solution for iteration variables that y holds: it is asked for where an event is located.
     /// Not where more than the unknowns and the relations decides it.
     fn note_solution(&mut self, t: f64, y: &[f64]) {
-        let Program { events, sorted, continuous, registers, .. } = &*self.program;
+        let Program { events, sorted, continuous, switching, .. } = &*self.program;
         let is_determined = events.is_empty()
             && events.roundings.is_empty()
             && sorted.dae.events.recordings.is_empty()
             && self.sensitivity.is_none();
-        if is_determined && y.len() == continuous.unknowns.len() {
-            let noted = &mut self.loops.at_event;
-            noted.time = t;
-            noted.y.clear();
-            noted.y.extend_from_slice(y);
-            noted.variables.clear();
-            noted.variables.extend_from_slice(&self.registers[..registers.n_variables()]);
+        if !is_determined || y.len() != continuous.unknowns.len() {
+            return;
         }
+        let registers = &self.registers;
+        let value = |register: u32| registers[register as usize];
+        let noted = &mut self.loops.at_event;
+        noted.time = t;
+        noted.y.clear();
+        noted.y.extend_from_slice(y);
+        noted.relations.clear();
+        noted.relations.extend(switching.relations.iter().map(|own| value(own.register)));
+        noted.solved.clear();
+        noted.solved.extend(self.program.solved_variables().map(|variable| value(variable.0)));
     }
 
     /// Takes the solution that was noted for the unknowns and relations at hand; whether there is one.
     pub(super) fn take_noted_solution(&mut self) -> bool {
         let noted = std::mem::take(&mut self.loops.at_event);
-        let mut relations =
-            self.program.switching.relations.iter().map(|own| own.register as usize);
-        let is_of_this_point = !noted.variables.is_empty()
+        let program = self.program.clone();
+        let mut relations = program.switching.relations.iter().zip(&noted.relations);
+        let is_of_this_point = !noted.solved.is_empty()
             && self.is_loaded(noted.time, &noted.y)
-            && relations.all(|own| self.registers[own] == noted.variables[own]);
+            && relations.all(|(own, value)| self.registers[own.register as usize] == *value);
         if is_of_this_point {
-            self.registers[..noted.variables.len()].copy_from_slice(&noted.variables);
+            for (variable, value) in program.solved_variables().zip(&noted.solved) {
+                self.registers[variable.0 as usize] = *value;
+            }
         }
         self.loops.at_event = SolutionAtEvent { time: f64::NAN, ..noted };
         is_of_this_point

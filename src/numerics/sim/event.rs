@@ -86,8 +86,17 @@ const NEARER: f64 = 0.25;
 /// than this part approximate the derivative there.
 const QUOTIENT_CHANGE: f64 = 0.25;
 
+/// Much more than rounding makes of a few products.
+const ROUGHLY: f64 = 1e-9;
+
 /// The vertex of the parabola through three points, if it lies between the last two.
 fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64)> {
+    // Most functions are monotonic: |second| is not smaller than |curvature| (b - a), seen without a
+    // division.
+    let (p, q) = ((left - z0) * (b - a), (right - left) * (a - t0));
+    if (q * (b - t0)).abs() > (1.0 + ROUGHLY) * ((q - p) * (b - a)).abs() {
+        return None;
+    }
     let (first, second) = ((left - z0) / (a - t0), (right - left) / (b - a));
     let curvature = (second - first) / (b - t0);
     let t = 0.5 * (a + b - second / curvature);
