@@ -84,7 +84,11 @@ impl Document {
     /// Whether it is a problem file: one with an experiment.
     pub fn is_problem(&self) -> bool {
         let mut lines = self.text.lines();
-        self.is_toml() && lines.any(|line| line.trim_start().starts_with("[[experiment]]"))
+        let is_head = |line: &str| {
+            let words: String = line.split_whitespace().collect();
+            words.starts_with("[[experiment]]")
+        };
+        self.is_toml() && lines.any(is_head)
     }
 
     /// The name that is shown in messages.

@@ -1,5 +1,6 @@
 //! Arguments of tools: what an assistant gives, checked.
 
+use crate::script::world::normalized;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
@@ -109,16 +110,25 @@ impl Folders {
     ///
     /// It is not there, or lies elsewhere, also by a link.
     pub(super) fn input(&self, name: &str) -> Result<PathBuf, String> {
-        let found = self.working.join(name).canonicalize();
-        let found = found.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
-        let mut all = std::iter::once(&self.working).chain(&self.libraries);
-        match all.any(|folder| found.starts_with(folder)) {
-            true => Ok(found),
-            false => Err(format!(
+        let outside = || {
+            format!(
                 "`{name}` lies outside of the working folder {} and of the folders of libraries",
                 self.working.display()
-            )),
+            )
+        };
+        // Whether there is something outside is not said, either.
+        let named = normalized(&self.working.join(name));
+        if !self.holds(&named) {
+            return Err(outside());
         }
+        let found = named.canonicalize();
+        let found = found.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
+        if self.holds(&found) { Ok(found) } else { Err(outside()) }
+    }
+
+    fn holds(&self, path: &Path) -> bool {
+        let mut all = std::iter::once(&self.working).chain(&self.libraries);
+        all.any(|folder| path.starts_with(folder))
     }
 
     /// A folder for files that this program makes, in the working folder.

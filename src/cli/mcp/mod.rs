@@ -47,7 +47,9 @@ const INSTRUCTIONS: &str = "\
 Tools for Modelica models in the working folder. Write models (.mo) and problem files (.toml) as files, \
 `check` them, `simulate` them with values of parameters, and `identify` parameters from measured data. \
 `explain` says what a code such as unknown-name in a message means. `search` finds classes of libraries \
-by words of their names and documentation. Do not report identified values without the verdicts and \
+by words of their names and documentation. Messages name options of the command line: \
+`--resume` is the argument `resume` of the tool; permissions (`--allow-read` and its like) are given by the \
+user alone, when the server is started. Do not report identified values without the verdicts and \
 remarks that come with them.";
 
 /// Codes of errors in JSON-RPC.
@@ -101,6 +103,13 @@ fn received(calls: &Calls, line: &[u8]) {
     };
     let params = message.get("params").cloned().unwrap_or(Value::Null);
     match id {
+        Some(Value::Null) => {
+            calls.refuse(
+                &Value::Null,
+                INVALID_REQUEST,
+                "the id of a request is a string or a number",
+            );
+        }
         Some(id) => requested(calls, &id, method, &params),
         None if method == "notifications/cancelled" => calls.cancel(&params["requestId"]),
         None => {}

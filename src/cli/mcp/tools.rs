@@ -8,11 +8,14 @@ use crate::packages;
 use crate::results::{self, ResultTable};
 use serde_json::{Map, Value, json};
 use std::ffi::OsString;
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// The folder for results of simulations.
 const RESULTS: &str = "results/mcp";
+/// Files of one model in it, at most.
+const MOST_FILES: usize = 100_000;
 /// Rows of trajectories in an answer, at most.
 const MOST_ROWS: usize = 40;
 /// Variables in an answer, at most.
@@ -302,25 +305,36 @@ fn simulate(tools: &Tools, arguments: &Arguments<'_>, stop: &Stop) -> Result<Ans
     let file = output_file(tools, model)?;
     command.extend(["--output".into(), file.clone().into_os_string()]);
     command.extend(tools.inputs(arguments, "files")?);
-    let answer = ran(&command, stop)?;
-    if answer.is_error {
-        return Ok(answer);
-    }
+    let answer = ran(&command, stop);
     let shown = tools.folders.shown(&file);
+    if !answer.as_ref().is_ok_and(|answer| !answer.is_error) {
+        // What a simulation has computed until it failed is kept; its message says so.
+        if file.metadata().is_ok_and(|file| file.len() == 0) {
+            _ = std::fs::remove_file(&file);
+        }
+        return answer;
+    }
+    let answer = answer?;
     let rows = rows(&file, &variables).map_err(|why| format!("`{shown}`: {why}"))?;
     Ok(Answer::of(format!("{}\n{rows}\nAll rows are in {shown}.\n", answer.text.trim_end())))
 }
 
-/// The file for the trajectories of a model, which a further simulation of it replaces.
+/// A new file for the trajectories of a model: calls at the same time, and later ones, have others.
 fn output_file(tools: &Tools, model: &str) -> Result<PathBuf, String> {
     let class = model.split('(').next().unwrap_or_default();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_');
     let name: String = class.chars().filter(|c| is_plain(*c)).collect();
-    let file = tools.folders.output(RESULTS)?.join(format!("{}.csv", name.trim_matches('.')));
-    match file.is_symlink() {
-        true => Err(format!("`{}` is a link", tools.folders.shown(&file))),
-        false => Ok(file),
+    let folder = tools.folders.output(RESULTS)?;
+    for number in 1..=MOST_FILES {
+        let file = folder.join(format!("{}-{number}.csv", name.trim_matches('.')));
+        // Making it is what takes it from other calls; a link is there already.
+        match File::create_new(&file) {
+            Ok(_) => return Ok(file),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(format!("`{}`: {error}", tools.folders.shown(&file))),
+        }
     }
+    Err(format!("{RESULTS} has {MOST_FILES} results of this model: remove some"))
 }
 
 /// Rows of trajectories as CSV: some between the first and the last one.

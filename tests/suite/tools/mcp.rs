@@ -119,7 +119,7 @@ fn an_assistant_checks_simulates_identifies_and_looks_up() {
     let last = text.lines().rfind(|line| line.starts_with("1,")).unwrap();
     let value: f64 = last[2..].parse().unwrap();
     assert!(!is_error && (value - 0.135_335_283).abs() < 1e-4, "{text}");
-    assert!(here.path().join("results/mcp/Decay.csv").is_file());
+    assert!(here.path().join("results/mcp/Decay-1.csv").is_file());
     let (text, is_error) = server.call("identify", json!({"problem": "fit.toml"}));
     assert!(!is_error && text.contains("95 % interval"), "{text}");
     let (text, is_error) = server.call("explain", json!({"code": "unknown-name"}));
@@ -147,7 +147,12 @@ fn what_is_wrong_is_answered() {
     assert_eq!((&answer["id"], &answer["error"]["code"]), (&json!(id), &json!(-32602)));
     server.ask("resources/list", json!({}));
     assert_eq!(server.read()["error"]["code"], -32601);
-    for (line, code) in [("nonsense", -32700), ("[1]", -32600), ("{\"id\": 1}", -32600)] {
+    for (line, code) in [
+        ("nonsense", -32700),
+        ("[1]", -32600),
+        ("{\"id\": 1}", -32600),
+        ("{\"id\": null, \"method\": \"ping\"}", -32600),
+    ] {
         server.send(line);
         assert_eq!(server.read()["error"]["code"], code, "{line}");
     }
@@ -169,6 +174,10 @@ fn files_outside_of_the_working_folder_are_refused() {
         let (text, is_error) = server.call("check", json!({"files": [file]}));
         assert!(is_error && !text.contains("Decay:"), "{file}: {text}");
     }
+    // Nor is it said whether there is such a file.
+    let (there, _) = server.call("check", json!({"files": ["../outside.mo"]}));
+    let (missing, _) = server.call("check", json!({"files": ["../missing.mo"]}));
+    assert_eq!(there.replace("outside.mo", "missing.mo"), missing);
     // Nor by a problem file, or by a link.
     let (text, is_error) = server.call("identify", json!({"problem": "fit.toml"}));
     assert!(is_error && text.contains("outside.csv"), "{text}");
@@ -183,8 +192,33 @@ fn files_outside_of_the_working_folder_are_refused() {
         let arguments = json!({"model": "Decay", "files": ["Decay.mo"]});
         let (text, is_error) = server.call("simulate", arguments);
         assert!(is_error && text.contains("link"), "{text}");
-        assert!(!home.path().join("Decay.csv").exists());
+        assert!(!home.path().join("Decay-1.csv").exists());
     }
+    assert_eq!(server.end(), 0);
+}
+
+/// Calls at the same time answer each with its own rows.
+#[test]
+fn each_simulation_has_a_file_of_its_own() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    let mut server = Server::start(here.path());
+    let ask = |server: &mut Server, k: u32| {
+        let arguments = json!({"model": "Decay", "files": ["Decay.mo"], "parameters": {"k": k},
+            "variables": ["k"], "intervals": 2});
+        server.ask("tools/call", json!({"name": "simulate", "arguments": arguments}))
+    };
+    let ids: Vec<(u64, u32)> = (1..=6).map(|k| (ask(&mut server, k), k)).collect();
+    for _ in &ids {
+        let answer = server.read();
+        let (_, k) = ids.iter().find(|(id, _)| answer["id"] == json!(id)).unwrap();
+        let text = answer["result"]["content"][0]["text"].as_str().unwrap();
+        assert!(text.contains(&format!("\n1,{k}\n")), "{k}: {text}");
+    }
+    assert_eq!(fs::read_dir(here.path().join("results/mcp")).unwrap().count(), 6);
+    // A call that fails leaves no empty file.
+    let arguments = json!({"model": "None", "files": ["Decay.mo"]});
+    assert!(server.call("simulate", arguments).1);
+    assert_eq!(fs::read_dir(here.path().join("results/mcp")).unwrap().count(), 6);
     assert_eq!(server.end(), 0);
 }
 
