@@ -67,6 +67,23 @@ impl Reported {
         Reported::fault(if help.is_empty() { fault } else { fault.help(help.to_owned()) })
     }
 
+    /// With the arguments of Python in place of the options of the command line.
+    pub(crate) fn in_python(mut self) -> Reported {
+        let options = [
+            ("`--resume`", "`resume=True`"),
+            ("`--fresh`", "`fresh=True`"),
+            ("`--overwrite`", "`overwrite=True`"),
+            ("`--out`", "`out`"),
+        ];
+        let helps = self.helps.iter_mut();
+        for own in [&mut self.message, &mut self.text].into_iter().chain(helps) {
+            for (option, argument) in options {
+                *own = own.replace(option, argument);
+            }
+        }
+        self
+    }
+
     pub(crate) fn is_error(&self) -> bool {
         self.severity == "error"
     }

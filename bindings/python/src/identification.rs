@@ -85,7 +85,10 @@ pub(crate) fn identify(
     let shown = Shown { prints: verbose, progress: progress.as_ref() };
     let work = move |engine: &mut Engine| solved(engine, task, options);
     let (answer, _) = session.worker.call_shown(py, &shown, work)?;
-    let (solved, interrupted) = answer.map_err(|errors: Vec<Reported>| raised(py, &errors))?;
+    let (solved, interrupted) = answer.map_err(|errors: Vec<Reported>| {
+        let errors: Vec<Reported> = errors.into_iter().map(Reported::in_python).collect();
+        raised(py, &errors)
+    })?;
     match interrupted {
         true => Err(PyKeyboardInterrupt::new_err("the identification was interrupted")),
         false => Ok(solved),

@@ -61,8 +61,10 @@ def test_the_same_content_is_the_same_problem(tmp_path):
     assert first.path is not None and (first.path / "result.json").is_file()
     again = gapilib.identify(problem(1, stop={"generations": 500}), out="out", resume=True)
     assert again.parameters == first.parameters
-    with pytest.raises(gapilib.GapilibError, match="results of another problem"):
+    with pytest.raises(gapilib.GapilibError, match="results of another problem") as error:
         gapilib.identify(problem(2), out="out")
+    # In the words of Python.
+    assert "overwrite=True" in str(error.value) and "--" not in str(error.value)
     assert gapilib.identify(problem(2), out="out", overwrite=True).parameters != first.parameters
 
 
@@ -156,6 +158,8 @@ def test_messages_are_about_what_was_written():
     assert "expected a range" in str(error.value) and "struct" not in str(error.value)
     with pytest.raises(ValueError, match="pair"):
         gapilib.identify(problem(parameters={"k": (1, 2, 3)}))
+    with pytest.raises(TypeError, match="range of `k`"):
+        gapilib.identify(problem(parameters={"k": ("a", 2)}))
     wrong = problem()
     wrong["experiment"]["x"] = "t"
     wrong["experiment"]["data"] = {"t": TIMES, "x": TIMES}

@@ -170,7 +170,10 @@ def _parameter(name: str, entry: Any) -> Any:
     if isinstance(entry, (tuple, list)):
         if len(entry) != 2:
             raise ValueError(f"the range of `{name}` is a pair (min, max), not {len(entry)} values")
-        return {"min": float(entry[0]), "max": float(entry[1])}
+        try:
+            return {"min": float(entry[0]), "max": float(entry[1])}
+        except (TypeError, ValueError):
+            raise TypeError(f"the range of `{name}` is a pair of numbers (min, max), not {entry!r}") from None
     return entry
 
 
