@@ -57,14 +57,12 @@ pub struct Pool {
     shares: Vec<usize>,
     required: Required,
     accuracy: Accuracy,
-    /// How far a step of a descent may move each gene.
-    reach: Vec<f64>,
     /// Descents and the smallest sum of squares at the begin of each round.
     rounds: Vec<(usize, f64)>,
 }
 
 impl Pool {
-    pub fn new(accuracy: Accuracy, reach: Vec<f64>) -> Pool {
+    pub fn new(accuracy: Accuracy) -> Pool {
         Pool {
             descents: Vec::new(),
             joined: Vec::new(),
@@ -73,7 +71,6 @@ impl Pool {
             shares: Vec::new(),
             required: Required::Jacobians,
             accuracy,
-            reach,
             rounds: Vec::new(),
         }
     }
@@ -92,8 +89,7 @@ impl Pool {
         self.refine();
         for (number, start) in starts.into_iter().enumerate() {
             self.active.push(self.descents.len());
-            let own = Descent::new(start, self.accuracy, STEPS, COARSE);
-            self.descents.push(own.within(&self.reach));
+            self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
             self.joined.push(None);
             self.independent.push(number < independent);
         }
@@ -166,7 +162,7 @@ impl Pool {
 
     /// Forgets everything, as the ranges have changed.
     pub fn clear(&mut self) {
-        *self = Pool::new(self.accuracy, std::mem::take(&mut self.reach));
+        *self = Pool::new(self.accuracy);
     }
 
     /// The descent with the smallest sum of squares.

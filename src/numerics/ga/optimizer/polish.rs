@@ -7,7 +7,7 @@
 
 use super::descents::{FEWEST, Pool, is_far};
 use super::exchange::{Exchanges, Scale};
-use super::levenberg_marquardt::{Accuracy, reach};
+use super::levenberg_marquardt::Accuracy;
 use super::{Answers, DescentReport, Optimizer, Required, Setup, has_failed, key};
 use crate::diag::Fault;
 use crate::elementary;
@@ -91,7 +91,7 @@ impl Polished {
     pub(super) fn alone(setup: &Setup, points: usize, from_sample: usize) -> Polished {
         Polished {
             search: None,
-            pool: Pool::new(Accuracy::of(setup), reach(&setup.scales)),
+            pool: Pool::new(Accuracy::of(setup)),
             stage: Stage::Sample,
             rng: setup.rng.clone(),
             points,
