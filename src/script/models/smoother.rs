@@ -38,6 +38,8 @@ pub(crate) struct Row {
     pub covariance: DMatrix<f64>,
     /// Φ from the row before.
     pub transition: DMatrix<f64>,
+    /// h of all outputs.
+    pub gains: Vec<DVector<f64>>,
     /// Its samples, in the order in which the filter takes them.
     pub samples: Vec<Sample>,
 }
@@ -97,6 +99,7 @@ mod tests {
                     state: one(state),
                     covariance: DMatrix::from_element(1, 1, p),
                     transition: DMatrix::identity(1, 1),
+                    gains: vec![one(1.0)],
                     samples: vec![Sample {
                         gain: one(1.0),
                         product: one(product),

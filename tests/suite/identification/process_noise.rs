@@ -339,6 +339,16 @@ fn smoothed_states_are_those_of_an_exact_smoother() {
     {
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     }
+    // The second output of a row is predicted from earlier rows, not from the first one.
+    for (name, expected) in [
+        ("predicted(Tm)", 16.917146249611086),
+        ("sd(predicted(Tm))", 0.44051111100366513),
+        ("predicted over 2(Tm)", 16.249123901871638),
+        ("sd(predicted over 2(Tm))", 0.4522045419564811),
+    ] {
+        let found = *column(&table, name).iter().rev().nth(1).unwrap();
+        assert!((found - expected).abs() < 1e-9, "{name}: {found} {expected}");
+    }
     // Where there were not two samples before, there is none.
     assert!(column(&table, "predicted over 2(Ti)")[1].is_nan());
 }

@@ -271,6 +271,7 @@ impl<'a> Estimation<'a> {
             gain
         });
         let gains: Vec<DVector<f64>> = gains.collect();
+        let all_gains = gains.clone();
         let outputs =
             self.series.iter().zip(&self.predictions).zip(products.into_iter().zip(gains));
         let samples = outputs.filter_map(|((own, [mean, sd]), (product, gain))| {
@@ -282,7 +283,8 @@ impl<'a> Estimation<'a> {
                 innovation: measured - mean[at],
             })
         });
-        Row { state, covariance, transition, samples: samples.collect() }
+        let samples = samples.collect();
+        Row { state, covariance, transition, gains: all_gains, samples }
     }
 
     /// The states as a result shows them.
@@ -301,6 +303,24 @@ impl<'a> Estimation<'a> {
             }
         };
         self.states.names.iter().enumerate().map(state).collect()
+    }
+
+    /// The prediction of an output from earlier rows alone, and its standard deviation: the filter takes
+    /// the outputs of a row one after the other, and the ones before it have moved its own.
+    fn from_earlier_rows(&self, output: usize, at: usize) -> (f64, f64) {
+        let row = &self.rows[at];
+        let [mean, sd] = self.predictions[output].each_ref().map(|own| own[at]);
+        let gain = &row.gains[output];
+        let is_before = |k: &usize| sample_at(self.series[*k], self.times[at]).is_some();
+        let before = (0..output).filter(is_before).count();
+        let mut moved = 0.0;
+        let mut variance = sd * sd;
+        for own in &row.samples[..before] {
+            let along = gain.dot(&own.product);
+            moved += along * own.innovation / own.variance;
+            variance += along * along / own.variance;
+        }
+        (mean - moved, variance.sqrt())
     }
 
     /// The rows with samples.
@@ -369,7 +389,10 @@ impl<'a> Estimation<'a> {
         for (k, own) in self.series.iter().enumerate() {
             let (name, unit) = (&own.y_name, &own.y_unit);
             let [mean, sd] = &self.predictions[k];
-            let value = made.pair(&format!("predicted({name})"), unit, (times, mean, sd));
+            let before = (0..times.len()).map(|at| self.from_earlier_rows(k, at));
+            let (means, deviations): (Vec<f64>, Vec<f64>) = before.unzip();
+            let value =
+                made.pair(&format!("predicted({name})"), unit, (times, &means, &deviations));
             let measured = made.column(&format!("measured({name})"), unit, (&own.x, &own.y));
             let mut shown = Shown { value, measured: Some(measured), ..Shown::default() };
             for (what, found) in others {

@@ -51,7 +51,7 @@ pub(super) fn filtered(
             times: own.x.clone(),
             values: own.y.clone(),
             sigma: sigma(output, own),
-            is_used: file.filtering != Filtering::Simulated,
+            is_used: !matches!(file.filtering, Filtering::Simulated | Filtering::Ahead(..)),
         })
         .collect();
     let start = experiment.settings.start;
