@@ -13,6 +13,9 @@ const LANGUAGES = [
 
 let client;
 
+// Classes, and the data and models that problem files and scripts name.
+const WATCHED = '**/{*.mo,package.order,*.csv,*.tsv,*.txt,*.mat,*.fmu,*.xml}';
+
 function setting(name) {
   return vscode.workspace.getConfiguration('gapilib').get(name);
 }
@@ -23,7 +26,7 @@ async function start() {
   const run = { command: setting('path'), args: ['lsp', ...options], transport: TransportKind.stdio };
   client = new LanguageClient('gapilib', 'GAPILib', { run, debug: run }, {
     documentSelector: LANGUAGES,
-    synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher('**/{*.mo,package.order}') },
+    synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher(WATCHED) },
   });
   try {
     await client.start();

@@ -33,7 +33,7 @@ pub struct Session {
     /// The text of all files read so far.
     pub sources: SourceMap,
     /// Files in memory, by absolute paths: they take the place of those on the disk.
-    pub(super) given: BTreeMap<PathBuf, Vec<u8>>,
+    pub(super) given: BTreeMap<PathBuf, Arc<[u8]>>,
     /// Where translated models are kept from one process to the next, if they are.
     pub storage: Option<Arc<dyn Store>>,
     /// What it answers.

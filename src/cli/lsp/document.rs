@@ -81,6 +81,11 @@ impl Document {
         self.uri.as_str().ends_with(".toml")
     }
 
+    /// Whether its file is one of classes.
+    pub fn is_modelica(&self) -> bool {
+        self.uri.as_str().ends_with(".mo")
+    }
+
     /// Whether it is a problem file: one with an experiment.
     pub fn is_problem(&self) -> bool {
         let mut lines = self.text.lines();

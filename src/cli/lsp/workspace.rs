@@ -229,6 +229,18 @@ impl Workspace {
         parsed.names.iter().all(is_own)
     }
 
+    /// What is wrong with a script or a problem, which name files of classes: of those that are open the
+    /// contents of the editor count.
+    fn check_user_of_files(&mut self, parsed: &Parsed, all: &Documents) -> Vec<Diagnostic> {
+        let open = all.values().filter(|document| document.is_modelica());
+        let open: Vec<_> = open.filter_map(|own| Some((own.path.as_ref()?, &own.text))).collect();
+        open.iter().for_each(|(path, text)| self.session.give(path, text.as_bytes()));
+        let mut found = self.check_script(parsed);
+        found.extend(self.check_problem(parsed));
+        open.iter().for_each(|(path, _)| self.session.take_back(path));
+        found
+    }
+
     /// What is wrong with the calls of a script.
     fn check_script(&mut self, parsed: &Parsed) -> Vec<Diagnostic> {
         let Some(Tree::Script(script)) = &parsed.tree else { return Vec::new() };
@@ -257,8 +269,7 @@ impl Workspace {
         found.retain(|error| error.code != NOT_A_SCRIPT);
         let mut models = VecDeque::new();
         if parsed.errors.is_empty() {
-            found.extend(self.check_script(&parsed));
-            found.extend(self.check_problem(&parsed));
+            found.extend(self.check_user_of_files(&parsed, all));
             for (name, class) in parsed.all_classes() {
                 found.extend(self.session.examine_class(&name));
                 let is_model = matches!(class.restriction, Restriction::Model | Restriction::Block);

@@ -10,9 +10,33 @@ use crate::language::transcript::PROMPT;
 use crate::results::{self, Format, ResultTable};
 use crate::syntax;
 use crate::value::Value;
-use crate::world::normalized;
+use crate::world::{FileReader, normalized};
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Files some of which are in memory.
+#[derive(Debug)]
+struct Given {
+    files: Arc<dyn FileReader>,
+    given: BTreeMap<PathBuf, Arc<[u8]>>,
+}
+
+impl FileReader for Given {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let given = self.given.get(path).map(|given| given.to_vec());
+        given.map_or_else(|| self.files.read(path), Ok)
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        self.files.list_dir(path)
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        self.given.contains_key(path) || self.files.is_file(path)
+    }
+}
 
 impl Session {
     /// The file or directory that a script means: relative to the working directory, else to the
@@ -32,18 +56,41 @@ impl Session {
 
     /// Whether there is a file or folder that may be read.
     pub(crate) fn sees(&self, path: &Path) -> bool {
-        self.world.exists(path) && self.world.permits(path, Access::Read).is_ok()
+        let is_there = || self.world.exists(path) && self.world.permits(path, Access::Read).is_ok();
+        self.given.contains_key(path) || is_there()
     }
 
-    /// Gives the data or the problem of a program that embeds this one as a file in memory.
-    pub fn give(&mut self, path: &Path, bytes: Vec<u8>) {
-        self.given.insert(self.world.absolute(path), bytes);
+    /// Gives the content of a file in memory, which counts instead of what is on the disk: the data or the
+    /// problem of a program that embeds this one, the text in an editor.
+    pub fn give(&mut self, path: &Path, bytes: impl Into<Arc<[u8]>>) {
+        self.given.insert(self.world.absolute(path), bytes.into());
+    }
+
+    /// From now on the file on the disk counts again.
+    pub fn take_back(&mut self, path: &Path) {
+        self.given.remove(&self.world.absolute(path));
+    }
+
+    /// The bytes of a file by its own path: what was given, or what is on the disk.
+    pub(crate) fn bytes_of(&self, path: &Path) -> io::Result<Vec<u8>> {
+        match self.given.get(&self.world.absolute(path)) {
+            Some(given) => Ok(given.to_vec()),
+            None => self.world.read(path),
+        }
+    }
+
+    /// The files as libraries read them, later and from any thread: with what was given.
+    pub(crate) fn reader(&self) -> Arc<dyn FileReader> {
+        match self.given.is_empty() {
+            true => self.world.reader(),
+            false => Arc::new(Given { files: self.world.reader(), given: self.given.clone() }),
+        }
     }
 
     /// The bytes of a file that a script names.
     pub fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, Fault> {
         if let Some(given) = self.given.get(&self.world.absolute(path)) {
-            return Ok(given.clone());
+            return Ok(given.to_vec());
         }
         let Some(found) = self.find_current(path)? else {
             return Err(self.missing_file(path));

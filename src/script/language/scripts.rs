@@ -338,7 +338,7 @@ impl Session {
     /// Reads a text file among the sources, under its path relative to the working directory.
     pub(crate) fn add_file(&mut self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
         self.check_current(path)?;
-        let bytes = self.world.read(path).map_err(|error| cannot("read", path, &error))?;
+        let bytes = self.bytes_of(path).map_err(|error| cannot("read", path, &error))?;
         let (text, warning) = syntax::decode(&bytes);
         let current = self.world.current_dir();
         let shown = path.strip_prefix(&current).unwrap_or(path).display().to_string();

@@ -36,7 +36,7 @@ impl Session {
     /// The files of a library that is going to be loaded.
     pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
-            self.world.reader(),
+            self.reader(),
             self.classes.reads.clone(),
             self.sources.clone(),
             self.world.current_dir(),

@@ -98,7 +98,7 @@ impl Session {
 
     /// The name of the package that a folder holds.
     pub(super) fn package_in(&self, folder: &Path) -> Option<Ident> {
-        let bytes = self.world.read(&folder.join("package.mo")).ok()?;
+        let bytes = self.bytes_of(&folder.join("package.mo")).ok()?;
         let (text, _) = syntax::decode(&bytes);
         let package = Outline::of(&text)?.classes.into_iter().next()?;
         Some(Ident::new(&text[package.name]))

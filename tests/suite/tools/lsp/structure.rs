@@ -201,6 +201,43 @@ fn problem_files_are_checked_and_completed() {
 }
 
 /// The labels that are offered after a text that occurs once.
+#[test]
+fn problem_files_follow_the_classes_in_the_editor_and_the_files_on_the_disk() {
+    let line = crate::support::program::LINE;
+    let here = folder(&[("Line.mo", line), ("data.csv", "x,y\n0,1\n1,2\n2,3.1\n")]);
+    std::fs::create_dir(here.path().join("Lib")).unwrap();
+    let (package, inner) = (here.path().join("Lib/package.mo"), here.path().join("Lib/Line.mo"));
+    std::fs::write(&package, "within;\npackage Lib\nend Lib;\n").unwrap();
+    let inside = format!("within Lib;\n{line}");
+    std::fs::write(&inner, &inside).unwrap();
+    let (model, data) = (here.path().join("Line.mo"), here.path().join("data.csv"));
+    let mut client = Client::start(here.path());
+    let [path, second] = ["fit.toml", "second.toml"].map(|name| here.path().join(name));
+    client.open(&path, PROBLEM);
+    assert_eq!(client.diagnostics(&path, 1), Vec::<String>::new());
+    // Each change is followed without a change of the problem.
+    let renamed =
+        |text: &str| text.replace("Real a", "Real slope").replace("y = a +", "y = slope +");
+    client.open(&model, &renamed(line));
+    let found = client.diagnostics(&path, 1);
+    assert!(found.len() == 1 && found[0].contains("no parameter `a`"), "{found:?}");
+    client.change(&model, 2, line);
+    assert_eq!(client.diagnostics(&path, 1), Vec::<String>::new());
+    std::fs::write(&data, "x,z\n0,1\n1,2\n2,3.1\n").unwrap();
+    let changes = json!({"changes": [{"uri": uri(&data), "type": 2}]});
+    client.notify("workspace/didChangeWatchedFiles", changes);
+    let found = client.diagnostics(&path, 1);
+    assert!(found.len() == 1 && found[0].contains("no column `y`"), "{found:?}");
+    std::fs::write(&data, "x,y\n0,1\n1,2\n2,3.1\n").unwrap();
+    // A file of a package, of which the problem names the folder.
+    let of_package = PROBLEM.replace("\"Line\"", "\"Lib.Line\"").replace("Line.mo", "Lib");
+    client.open(&inner, &renamed(&inside));
+    client.open(&second, &of_package);
+    let found = client.diagnostics(&second, 1);
+    assert!(found.len() == 1 && found[0].contains("no parameter `a`"), "{found:?}");
+    assert_eq!(client.shut_down(), 0);
+}
+
 fn offered(client: &mut Client, path: &Path, text: &str, after: &str) -> Vec<String> {
     let (head, _) = text.split_once(after).unwrap();
     let head = format!("{head}{after}");
