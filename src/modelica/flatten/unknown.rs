@@ -54,6 +54,20 @@ pub(crate) fn component_of_variable(variable: &str, name: Ident, span: Span) -> 
     fault!(UNKNOWN_NAME, "`{variable}` is a variable and has no component `{name}`").at(span)
 }
 
+/// A literal that an enumeration of graphical annotations with the literals `known` does not have.
+pub(crate) fn graphical_literal(
+    enumeration: Ident,
+    literal: Ident,
+    known: &[&str],
+    span: Span,
+) -> Diagnostic {
+    fault!(UNKNOWN_NAME, "`{enumeration}` has no literal `{literal}`")
+        .help_if(suggest::did_you_mean(literal.as_str(), known.iter().copied()))
+        .help(format!("its literals are {}", known.join(", ")))
+        .at(span)
+        .warning()
+}
+
 /// An element to modify that a class with the elements `known` does not have.
 pub(crate) fn element(class: &Name, name: Ident, known: &[Ident], span: Span) -> Diagnostic {
     fault!(UNKNOWN_ELEMENT, "`{class}` has no component `{name}` to modify")

@@ -14,6 +14,7 @@ pub mod errors;
 mod failure;
 pub(crate) mod foreign;
 mod grammar;
+pub mod graphics;
 pub(crate) mod keywords;
 mod lazy;
 mod lower;

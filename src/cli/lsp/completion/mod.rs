@@ -2,7 +2,6 @@
 //! that is visible.
 
 mod context;
-mod graphics;
 mod problem;
 
 use super::client::Client;
@@ -16,6 +15,7 @@ use crate::functions;
 use crate::name::{Ident, Name};
 use crate::script::builtins;
 use crate::syntax::ast::{CausalityPrefix, Restriction, VariabilityPrefix};
+use crate::syntax::graphics;
 use context::Open;
 pub(super) use context::{Context, at as context_at};
 use lsp_types::{CompletionItem, CompletionItemKind, CompletionTextEdit, Position, TextEdit};

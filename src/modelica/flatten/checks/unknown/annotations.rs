@@ -4,13 +4,18 @@
 use super::NameCheck;
 use crate::flatten::checks::scope::Scope;
 use crate::flatten::unknown;
+use crate::name::{Ident, Name};
+use crate::source::Span;
 use crate::syntax::ast::{
-    Annotation, Argument, Binding, ElementModification, ExpressionKind, Modification, Restriction,
+    Annotation, Argument, Binding, Comment, ComponentReference, ElementModification,
+    ExpressionKind, Modification, Restriction,
 };
-use crate::syntax::visit::{Visit as _, walk_modification};
+use crate::syntax::graphics;
+use crate::syntax::visit::{Visit, walk_arguments, walk_modification};
 
 impl<'a> NameCheck<'a, '_> {
     pub(super) fn annotation(&mut self, class: Scope<'a>, annotation: &Annotation) {
+        self.graphics(annotation);
         if !matches!(class.restriction(), Restriction::Function { .. }) {
             return;
         }
@@ -27,6 +32,26 @@ impl<'a> NameCheck<'a, '_> {
                 _ => {}
             }
         }
+    }
+
+    /// Literals of the enumerations of graphics, which no tool can draw if there are none of this name.
+    pub(super) fn graphics(&mut self, annotation: &Annotation) {
+        let mut written = Literals(Vec::new());
+        walk_arguments(&mut written, &annotation.arguments);
+        for (enumeration, literal, span) in written.0 {
+            let known = graphics::literals(enumeration.as_str());
+            let scope = self.scope.map(|scope| scope.class);
+            let name = Name::new([enumeration, literal]);
+            let is_other = || self.library.parts_of_reference(scope, &name)[0].is_some();
+            if !known.is_empty() && !known.contains(&literal.as_str()) && !is_other() {
+                self.errors.push(unknown::graphical_literal(enumeration, literal, known, span));
+            }
+        }
+    }
+
+    /// The same for what stands after an element.
+    pub(super) fn comment(&mut self, comment: &Comment) {
+        comment.annotation.iter().for_each(|annotation| self.graphics(annotation));
     }
 
     /// The inputs that `inverse(x = f(y))` calculates, and how.
@@ -50,6 +75,17 @@ impl<'a> NameCheck<'a, '_> {
         match &value.kind {
             ExpressionKind::Reference(function) => _ = self.function(&function.name(), value.span),
             _ => self.expression(value),
+        }
+    }
+}
+
+/// Names of two parts, as literals of enumerations are written.
+struct Literals(Vec<(Ident, Ident, Span)>);
+
+impl Visit for Literals {
+    fn reference(&mut self, reference: &ComponentReference) {
+        if let [enumeration, literal] = reference.parts.as_slice() {
+            self.0.push((enumeration.name, literal.name, reference.span));
         }
     }
 }

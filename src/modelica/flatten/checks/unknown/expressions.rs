@@ -109,6 +109,7 @@ impl Visit for NameCheck<'_, '_> {
     }
 
     fn equation(&mut self, equation: &Equation) {
+        self.comment(&equation.comment);
         match &equation.kind {
             EquationKind::For { indices, .. } => {
                 self.within(indices, |walk| walk_equation(walk, equation));
@@ -118,6 +119,7 @@ impl Visit for NameCheck<'_, '_> {
     }
 
     fn statement(&mut self, statement: &Statement) {
+        self.comment(&statement.comment);
         match &statement.kind {
             StatementKind::For { indices, .. } => {
                 self.within(indices, |walk| walk_statement(walk, statement));

@@ -101,6 +101,7 @@ impl<'a> NameCheck<'a, '_> {
                 let base = self.class_of(&extends.base, &parts, is_open);
                 self.arguments(&base, &extends.modification);
                 self.excluded(&base, &extends.excluded);
+                extends.annotation.iter().for_each(|annotation| self.graphics(annotation));
             }
             Element::Component(clause) => self.clause(clause),
             // The class is checked by itself.
@@ -140,12 +141,14 @@ impl<'a> NameCheck<'a, '_> {
         let target = target.of(component.name.node);
         component.modification.iter().for_each(|one| self.modification(&target, one));
         component.condition.iter().for_each(|condition| self.expression(condition));
+        self.comment(&component.comment);
     }
 
     fn constraint(&mut self, constraint: Option<&Constraint>) {
         if let Some(constraint) = constraint {
             let target = self.specifier(&constraint.target);
             self.arguments(&target, &constraint.modification);
+            self.comment(&constraint.comment);
         }
     }
 
@@ -160,6 +163,7 @@ impl<'a> NameCheck<'a, '_> {
         let target = self.specifier(&short.target);
         self.subscripts(&short.subscripts);
         self.arguments(&target, &short.modification);
+        self.comment(&short.comment);
     }
 
     fn subscripts(&mut self, subscripts: &[Subscript]) {

@@ -28,6 +28,6 @@ const ENUMERATIONS: [(&str, &[&str]); 8] = [
 ];
 
 /// The literals of an enumeration; none of another name.
-pub(super) fn literals(name: &str) -> &'static [&'static str] {
+pub fn literals(name: &str) -> &'static [&'static str] {
     ENUMERATIONS.iter().find(|(own, _)| *own == name).map_or(&[], |(_, literals)| literals)
 }
