@@ -5,10 +5,14 @@ use super::tools::{Answer, Tools};
 use crate::terminal::print;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 /// Calls at one time, at most: each is a process that computes on all cores.
 const MOST: usize = 8;
+/// How often the progress of a call is reported.
+const EVERY: Duration = Duration::from_secs(2);
 
 /// The calls whose work is not done, by their requests, and how they are stopped.
 pub(super) struct Calls {
@@ -32,8 +36,8 @@ impl Calls {
         send(&json!({ "jsonrpc": "2.0", "id": id, "error": error }));
     }
 
-    /// Begins the work of a tool.
-    pub(super) fn begin(&self, id: &Value, name: &str, arguments: &Value) {
+    /// Begins the work of a tool, with the parameters of the request.
+    pub(super) fn begin(&self, id: &Value, name: &str, params: &Value) {
         let (key, stop) = (id.to_string(), Stop::default());
         let running = locked(&self.running).len();
         if running >= MOST {
@@ -42,9 +46,11 @@ impl Calls {
         }
         locked(&self.running).insert(key.clone(), stop.clone());
         let (tools, calls, own) = (self.tools.clone(), self.running.clone(), id.clone());
-        let (name, arguments) = (name.to_owned(), arguments.clone());
+        let (name, params) = (name.to_owned(), params.clone());
         let work = move || {
-            let answer = tools.call(&name, &arguments, &stop);
+            let progress = Running::report(&name, &params["_meta"]["progressToken"]);
+            let answer = tools.call(&name, &params["arguments"], &stop);
+            drop(progress);
             locked(&calls).remove(&key);
             // The protocol has no answer to a call that was cancelled.
             if !stop.is_asked() {
@@ -75,6 +81,42 @@ impl Calls {
                 break;
             }
             std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+    }
+}
+
+/// Reports how long a call has been running, if the request asks for that, until this is dropped.
+struct Running(Option<(mpsc::Sender<()>, JoinHandle<()>)>);
+
+impl Running {
+    fn report(name: &str, token: &Value) -> Running {
+        if token.is_null() {
+            return Running(None);
+        }
+        let (name, token, began) = (name.to_owned(), token.clone(), Instant::now());
+        let (done, ended) = mpsc::channel();
+        let work = move || {
+            while ended.recv_timeout(EVERY) == Err(mpsc::RecvTimeoutError::Timeout) {
+                let seconds = began.elapsed().as_secs_f64();
+                let message = format!("{name} has been running for {seconds:.0} s");
+                let params =
+                    json!({ "progressToken": token, "progress": seconds, "message": message });
+                let method = "notifications/progress";
+                send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
+            }
+        };
+        // Without a thread the call runs all the same.
+        let thread = std::thread::Builder::new().name("progress".to_owned()).spawn(work);
+        Running(thread.ok().map(|thread| (done, thread)))
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some((done, thread)) = self.0.take() {
+            drop(done);
+            // Nothing is reported after the answer.
+            _ = thread.join();
         }
     }
 }

@@ -47,8 +47,7 @@ const INSTRUCTIONS: &str = "\
 Tools for Modelica models in the working folder. Write models (.mo) and problem files (.toml) as files, \
 `check` them, `simulate` them with values of parameters, and `identify` parameters from measured data. \
 `explain` says what a code such as unknown-name in a message means. `search` finds classes of libraries \
-by words of their names and documentation. Messages name options of the command line: \
-`--resume` is the argument `resume` of the tool; permissions (`--allow-read` and its like) are given by the \
+by words of their names and documentation. Permissions (`--allow-read` and its like) are given by the \
 user alone, when the server is started. Do not report identified values without the verdicts and \
 remarks that come with them.";
 
@@ -92,6 +91,10 @@ fn received(calls: &Calls, line: &[u8]) {
         Ok(message) => message,
         Err(error) => return calls.refuse(&Value::Null, PARSE_ERROR, &error.to_string()),
     };
+    if message.is_array() {
+        let why = "batches are not supported: write each message on a line of its own";
+        return calls.refuse(&Value::Null, INVALID_REQUEST, why);
+    }
     let id = message.get("id").cloned();
     let Some(method) = message.get("method").and_then(Value::as_str) else {
         // Nothing was asked of the assistant that it could answer.
@@ -122,7 +125,7 @@ fn requested(calls: &Calls, id: &Value, method: &str, params: &Value) {
         "ping" => calls.answer(id, &json!({})),
         "tools/list" => calls.answer(id, &json!({ "tools": tools::descriptions() })),
         "tools/call" => match params["name"].as_str().filter(|name| tools::is_known(name)) {
-            Some(name) => calls.begin(id, name, &params["arguments"]),
+            Some(name) => calls.begin(id, name, params),
             None => {
                 let message =
                     format!("there is no tool {}; `tools/list` lists them", params["name"]);

@@ -182,6 +182,33 @@ impl Tool {
     }
 }
 
+/// Options that only a user gives, as commands speak of them and as an assistant has to.
+const OF_USERS: [(&str, &str); 2] = [
+    ("allow it with `--allow", "ask the user to start this server with `--allow"),
+    ("with `--out`", "on the command line (`gapi identify --out`), as the user can"),
+];
+
+impl Tool {
+    /// What a command says of its options, said of the arguments of the tool.
+    fn in_its_words(&self, text: &str) -> String {
+        let is_usage = |line: &str| {
+            line.starts_with("Usage: gapi ") || line == "For more information, try '--help'."
+        };
+        let lines = text.split_inclusive('\n').filter(|line| !is_usage(line.trim_end()));
+        let mut text: String = lines.collect();
+        for (name, ..) in self.arguments {
+            let option = match *name {
+                "parameters" => "--set".to_owned(),
+                name => format!("--{}", name.replace('_', "-")),
+            };
+            text = text.replace(&format!("`{option}`"), &format!("the argument `{name}`"));
+            text = text.replace(&format!("'{option}"), &format!("'{name}"));
+            text = text.replace(&format!(" {option}\n"), &format!(" the argument `{name}`\n"));
+        }
+        OF_USERS.iter().fold(text, |text, (written, said)| text.replace(written, said))
+    }
+}
+
 fn property((name, kind, meaning): (&str, &str, &str)) -> (String, Value) {
     let schema = match kind {
         "strings" => json!({
@@ -229,7 +256,8 @@ impl Tools {
         let none = Map::new();
         let arguments = Arguments::of(given, &known, &none);
         let answer = arguments.and_then(|arguments| (tool.call)(self, &arguments, stop));
-        answer.unwrap_or_else(Answer::error)
+        let answer = answer.unwrap_or_else(Answer::error);
+        Answer { text: tool.in_its_words(&answer.text), ..answer }
     }
 
     /// A command with the permissions of this one.
@@ -276,7 +304,11 @@ fn ran(command: &[OsString], stop: &Stop) -> Result<Answer, String> {
 
 fn check(tools: &Tools, arguments: &Arguments<'_>, stop: &Stop) -> Result<Answer, String> {
     let mut command = tools.limited("check");
-    if let Some(model) = arguments.text("model")? {
+    let model = arguments.text("model")?;
+    if model.is_none() && arguments.strings("files")?.is_empty() {
+        return Err("there is nothing to check: give `files`, `model` or both".to_owned());
+    }
+    if let Some(model) = model {
         command.push(format!("--model={model}").into());
     }
     command.extend(tools.inputs(arguments, "files")?);

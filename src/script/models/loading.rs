@@ -6,6 +6,7 @@ use super::stored::digest;
 use super::uses::names_in;
 use crate::Session;
 use crate::diag::{At, Diagnostic, Fault};
+use crate::errors::FILE_ERROR;
 use crate::eval::Function;
 use crate::flatten::{Library, RecordedInput};
 use crate::name::{Ident, Name};
@@ -58,16 +59,27 @@ impl Session {
     }
 
     /// A file or package, or all files and packages of a folder that is no package.
-    fn paths_to_load(&self, path: PathBuf) -> Vec<PathBuf> {
+    fn paths_to_load(&mut self, path: PathBuf) -> Vec<PathBuf> {
         let is_package = |path: &Path| self.world.exists(&path.join("package.mo"));
         if !self.world.is_dir(&path) || is_package(&path) {
             return vec![path];
         }
         let entries = self.world.list_dir(&path).unwrap_or_default().into_iter();
         let inside = entries.map(|entry| path.join(entry));
-        inside
+        let inside: Vec<PathBuf> = inside
             .filter(|path| is_package(path) || path.extension().is_some_and(|e| e == "mo"))
-            .collect()
+            .collect();
+        // What a link in the folder leads to was not named: that it is there is no permission to read it.
+        let leads_out = |path: &PathBuf| self.world.is_link(path) && !self.sees(path);
+        let (links, files): (Vec<PathBuf>, Vec<PathBuf>) = inside.into_iter().partition(leads_out);
+        for link in links {
+            let message =
+                format!("`{}` is passed over: it is a link out of the folder", link.display());
+            let fault = Fault::new(FILE_ERROR, message);
+            let help = "name the file to which it leads to load it as well";
+            self.report(fault.help(help).at(Span::NONE).warning());
+        }
+        files
     }
 
     fn load_all_of(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {

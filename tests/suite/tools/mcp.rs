@@ -241,3 +241,51 @@ fn a_call_can_be_stopped() {
     server.ask("tools/call", json!({"name": "simulate", "arguments": arguments}));
     assert_eq!(server.end(), 0);
 }
+
+#[test]
+fn answers_speak_of_the_arguments_of_the_tools() {
+    let here = folder(&[("in/Decay.mo", DECAY), ("in/fit.toml", PROBLEM), ("in/data.csv", DATA)]);
+    fs::write(here.path().join("Else.mo"), "model Else\nend Else;\n").unwrap();
+    let inside = here.path().join("in");
+    std::os::unix::fs::symlink("../Else.mo", inside.join("Link.mo")).unwrap();
+    let mut server = Server::start(&inside);
+    // A link out of the folder is passed over.
+    let (text, is_error) = server.call("check", json!({"files": ["."]}));
+    assert!(!is_error && text.contains("Decay: "), "{text}");
+    assert!(text.contains("Link.mo` is passed over"), "{text}");
+    let (text, is_error) = server.call("check", json!({}));
+    assert!(is_error && text.contains("give `files`") && !text.contains("Usage"), "{text}");
+    // Options are arguments.
+    let (text, is_error) =
+        server.call("simulate", json!({"model": "Decay", "files": ["Decay.mo"], "tolerance": -1}));
+    assert!(is_error && !text.contains("--"), "{text}");
+    let both = json!({"problem": "fit.toml", "resume": true, "fresh": true});
+    let (text, is_error) = server.call("identify", both);
+    assert!(is_error && text.contains("'resume'") && !text.contains("--"), "{text}");
+    assert_eq!(server.end(), 0);
+}
+
+#[test]
+fn progress_is_reported_on_request_and_batches_are_refused() {
+    let here = folder(&[("Slow.mo", SLOW)]);
+    let mut server = Server::start(here.path());
+    server.send("[{\"jsonrpc\": \"2.0\", \"id\": 1, \"method\": \"ping\"}]");
+    let refused = server.read();
+    assert!(refused["error"]["message"].as_str().unwrap().contains("batches"), "{refused}");
+    let arguments = json!({"model": "Slow", "files": ["Slow.mo"], "stop_time": 1000});
+    let params =
+        json!({"name": "simulate", "arguments": arguments, "_meta": {"progressToken": "t"}});
+    let id = server.ask("tools/call", params);
+    let [first, second] = [server.read(), server.read()];
+    for report in [&first, &second] {
+        assert_eq!(report["method"], "notifications/progress", "{report}");
+        assert_eq!(report["params"]["progressToken"], "t");
+    }
+    let seconds = |report: &Value| report["params"]["progress"].as_f64().unwrap();
+    assert!(seconds(&first) < seconds(&second));
+    let cancelled = json!({"requestId": id});
+    let params =
+        json!({"jsonrpc": "2.0", "method": "notifications/cancelled", "params": cancelled});
+    server.send(&params.to_string());
+    assert_eq!(server.end(), 0);
+}
