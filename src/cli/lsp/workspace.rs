@@ -11,6 +11,7 @@ use super::uri;
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::packages;
+use crate::script::language::output::subject;
 use crate::script::language::script_checks::check_script;
 use crate::script::models::documents::{CheckedModel, ModelCheck};
 use crate::script::runs::problem;
@@ -320,7 +321,7 @@ impl Workspace {
         let mut seen = BTreeSet::new();
         let is_new = |one: &&Diagnostic| {
             let span = one.span();
-            seen.insert((one.code.slug, span.source, span.start, one.message.clone()))
+            seen.insert((one.code.slug, span.source, span.start, subject(one).to_owned()))
         };
         let distinct = examination.found.iter().filter(is_new);
         distinct

@@ -69,7 +69,7 @@ impl Output {
             overheard.push(diagnostic.clone());
         }
         let is_error = diagnostic.is_error();
-        let place = || (diagnostic.span(), diagnostic.message.clone());
+        let place = || (diagnostic.span(), subject(&diagnostic).to_owned());
         if self.reported.as_mut().is_some_and(|reported| !reported.insert(place())) {
             return is_error;
         }
@@ -94,7 +94,8 @@ impl Output {
 
     /// Whether an error or a warning was reported where each is reported once.
     pub fn has_reported(&self, diagnostic: &Diagnostic) -> bool {
-        let place = (diagnostic.span(), diagnostic.clone().shortened().message.clone());
+        let diagnostic = diagnostic.clone().shortened();
+        let place = (diagnostic.span(), subject(&diagnostic).to_owned());
         self.reported.as_ref().is_some_and(|reported| reported.contains(&place))
     }
 
@@ -134,5 +135,14 @@ impl Output {
     /// Statements and answers so far.
     pub fn log(&self) -> &Log {
         &self.log
+    }
+}
+
+/// What a diagnostic is about at its place: two of one subject there are one. An expression has one type, in
+/// whatever words checks of the class and of its instances call it wrong.
+pub fn subject(diagnostic: &Diagnostic) -> &str {
+    match diagnostic.code.slug {
+        slug @ "type-mismatch" if diagnostic.span() != Span::NONE => slug,
+        _ => &diagnostic.message,
     }
 }

@@ -363,6 +363,12 @@ fn every_class_is_checked() {
     assert!(code == 1 && err.contains("`absent` is not declared"), "{err}");
     let (code, out, _) = gapi(&here, &["check", "Right.mo"]);
     assert!(code == 0 && out.contains("1 class, 0 models, 0 with errors"), "{out}");
+    // Of a value of a wrong type the class tells before its model does, in other words.
+    let text = "model T Real x = \"a\"; Boolean b = 1; end T;";
+    fs::write(here.path().join("T.mo"), text).unwrap();
+    let (code, out, err) = gapi(&here, &["check", "T.mo"]);
+    assert!(code == 1 && err.matches("error[type-mismatch]").count() == 2, "{err}");
+    assert!(out.contains("T: has the errors reported above"), "{out}");
 }
 
 /// A component whose parameters are given values where it is used is no error by itself.
