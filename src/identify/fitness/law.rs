@@ -77,7 +77,7 @@ impl Law {
     }
 
     /// Whether a limit was measured, not a value.
-    pub(super) fn is_censored(self) -> bool {
+    pub(crate) fn is_censored(self) -> bool {
         matches!(self, Law::Below | Law::Above)
     }
 
@@ -171,7 +171,7 @@ impl Law {
 
     /// The root of the information that a point has of its expectation, in units of w/σ; that of a limit
     /// depends on how far it is.
-    pub(super) fn root_information(self, u: f64) -> f64 {
+    pub(crate) fn root_information(self, u: f64) -> f64 {
         match self {
             Law::Below | Law::Above => self.factor(u),
             Law::Normal | Law::Laplace | Law::Poisson => 1.0,

@@ -10,6 +10,7 @@ use super::{
     Statistics, Subject,
 };
 use crate::diag::Fault;
+use crate::fitness::Law;
 use crate::ga::Mrg32k3a;
 use crate::ga::operators::KINDS;
 use crate::ga::sampling::latin_hypercube;
@@ -280,13 +281,21 @@ fn solved_series(
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
-        let deviations = || statistics.weights[places.clone()].iter().map(|w| measured.weight / w);
-        let square: f64 = deviations().map(|sigma| elementary::powi(sigma, 2)).sum();
+        // The weights are roots of the information, which the tails of Student's density lessen.
+        let scale = |(point, w): (usize, &f64)| match measured.law_of(point) {
+            law @ Law::Student(_) => measured.weight / w * law.root_information(0.0),
+            _ => measured.weight / w,
+        };
+        let deviations = || statistics.weights[places.clone()].iter().enumerate().map(scale);
+        let valued =
+            || deviations().enumerate().filter(|(at, _)| !measured.law_of(*at).is_censored());
+        let square: f64 = valued().map(|(_, sigma)| elementary::powi(sigma, 2)).sum();
         if solved.sigma_computed {
             solved.deviations = deviations().collect();
         }
-        solved.sigma = (measured.sigma != Sigma::Unknown)
-            .then(|| (square / measured.x.len() as f64).sqrt())
+        // The deviation of a count is that of its expectation.
+        solved.sigma = (measured.sigma != Sigma::Unknown && measured.law != Law::Poisson)
+            .then(|| (square / valued().count() as f64).sqrt())
             .filter(|sigma| sigma.is_finite());
         // Priors and deviations have points, but they are not data.
         measured.is_data().then_some(solved)

@@ -52,6 +52,8 @@ fn laplace_errors_have_the_median() {
 fn student_errors_are_those_of_scipy() {
     let found = fitted(" }", "sigma = 0.5, error = \"student\"", &MEASURED);
     is(&found, 2.194_462_404_676_697, Some(0.197_202_659), 16.501_053_698_131_482);
+    let scale = found.series[0].sigma.unwrap();
+    assert!((scale - 0.5).abs() < 1e-12, "the scale is the one that was given: {scale}");
     let found = fitted(" }", "sigma = \"estimate\", error = \"student\"", &MEASURED);
     is(&found, 2.200_720_203_585_628, None, 16.128_984_345_061_337);
     let normal = fitted(" }", "sigma = 0.5", &MEASURED);
@@ -84,6 +86,7 @@ fn counts_have_the_variance_of_their_expectation() {
     // -Σ ln(e^-3 3^y/y!)
     let factorials: f64 = [6.0_f64, 120.0, 1.0, 24.0, 2.0, 24.0].iter().map(|f| f.ln()).sum();
     is(&found, 3.0, Some((3.0_f64 / 6.0).sqrt()), 18.0 - 18.0 * 3.0_f64.ln() + factorials);
+    assert_eq!(found.series[0].sigma, None);
 }
 
 /// A Laplace prior moves the mean by 1/(n b) towards its centre, or holds the parameter there.
@@ -109,6 +112,8 @@ fn values_beyond_limits_have_the_probability_of_that() {
     let with = |more: &str| format!("{more}, below = 1.5, above = 4");
     let found = fitted(" }", &with("sigma = 0.8"), &measured);
     is(&found, 2.241_745_996_475_219_5, Some(0.259_813_161_8), 13.340_797_160_141_873);
+    let sigma = found.series[0].sigma.unwrap();
+    assert!((sigma - 0.8).abs() < 1e-12, "limits have no part in it: {sigma}");
     let found = fitted(" }", &with("sigma = \"estimate\""), &measured);
     is(&found, 2.225_314_038_349_760_3, None, 13.080_638_727_881_94);
     let found =
