@@ -233,6 +233,11 @@ fn check_model(session: &mut Session, model: &Name) -> bool {
         session.print(&format!("{model}: {missing} where it is used\n"));
         return true;
     }
+    // As in an editor: what is wrong only with the model by itself is not wrong with the class.
+    if !session.model_check(model).run().found.iter().any(Diagnostic::is_error) {
+        session.print(&format!("{model}: is complete where it is used\n"));
+        return true;
+    }
     if errors.iter().all(|error| session.output.has_reported(error)) {
         session.print(&format!("{model}: has the errors reported above\n"));
     }

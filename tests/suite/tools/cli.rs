@@ -363,6 +363,19 @@ fn every_class_is_checked() {
     assert!(code == 1 && err.contains("`absent` is not declared"), "{err}");
     let (code, out, _) = gapi(&here, &["check", "Right.mo"]);
     assert!(code == 0 && out.contains("1 class, 0 models, 0 with errors"), "{out}");
+    // What the outside completes: an overdetermined connector, a part of a partial type.
+    let text = "package Open
+          type Angle extends Real; function equalityConstraint input Angle a; input Angle b;
+            output Real r[0]; algorithm end equalityConstraint; end Angle;
+          connector Pin Real v; flow Real i; Angle angle; end Pin;
+          model Part Pin p; Pin n; equation p.i + n.i = 0; p.v - n.v = p.i;
+            Connections.branch(p.angle, n.angle); p.angle = n.angle; end Part;
+          partial model Load Real x; end Load;
+          model User replaceable Load load; equation load.x = 1; end User;
+        end Open;";
+    fs::write(here.path().join("Open.mo"), text).unwrap();
+    let (code, out, err) = gapi(&here, &["check", "Open.mo"]);
+    assert!(code == 0 && out.contains("0 with errors"), "{out}{err}");
     // Of a value of a wrong type the class tells before its model does, in other words.
     let text = "model T Real x = \"a\"; Boolean b = 1; end T;";
     fs::write(here.path().join("T.mo"), text).unwrap();
