@@ -7,6 +7,7 @@ record Experiment "An experiment of a problem: what was measured, and under whic
   String outputs[:] "Variables that were measured";
   String columns[:] = outputs "Their columns";
   Real weights[:] = fill(1.0, size(outputs, 1)) "Every difference counts times this";
+  Real sigmas[:] = fill(0.0, 0) "Standard deviations of the errors of their measurements; 0, or none, where not known";
   String inputs[:] = fill("", 0) "Inputs of the model that follow columns of the data";
   String inputColumns[:] = inputs "Their columns";
   String settings[:] = fill("", 0) "Parameters that have other values in this experiment";

@@ -85,6 +85,13 @@ fn run(session: &mut Session, arguments: &EstimateArgs) -> Result<(), Vec<Diagno
     let EstimateArgs { steps, every, until, .. } = *arguments;
     let (values, experiment) = (arguments.values.as_deref(), arguments.experiment.as_deref());
     let options = EstimateOptions { values, experiment, steps, every, until };
+    // What cannot be written is refused before the run.
+    if let Some(path) = &arguments.output {
+        results::format_of_file(&path.to_string_lossy()).map_err(one)?;
+    }
+    if let Some(path) = &arguments.figure {
+        plot::Picture::of(path).map_err(one)?;
+    }
     let found = estimate(session, &arguments.problem, &options)?;
     let own = |file: &PathBuf| session.world.absolute(file);
     let read: Vec<PathBuf> = found.read.iter().map(own).collect();

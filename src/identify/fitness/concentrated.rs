@@ -210,15 +210,14 @@ impl Fitness for Concentrated {
 
     fn scaled(
         &self,
-        simulated: &[f64],
-        measured: &[f64],
-        weights: &[f64],
+        [simulated, measured, weights]: [&[f64]; 3],
+        shift: f64,
         residuals: &mut [f64],
         factors: &mut [f64],
     ) -> bool {
         let scales = self.scales([simulated, measured, weights], true);
         let n = measured.len() as f64;
-        let root = elementary::exp(0.5 * self.exponent(&scales) / n);
+        let root = elementary::exp(0.5 * (self.exponent(&scales) / n - shift));
         let kappa = (n / (scales.given_squares + scales.computed_squares)).sqrt();
         let is_computed = self.n_measured < n;
         let per = if is_computed { 1.0 / kappa } else { kappa };
@@ -316,7 +315,7 @@ mod tests {
         for own in cases() {
             let (mut r, mut f) = ([0.0; 6], [0.0; 6]);
             let mut square = |p: f64| {
-                assert!(own.scaled(&simulated(p), &MEASURED, &WEIGHTS, &mut r, &mut f));
+                assert!(own.scaled([&simulated(p), &MEASURED, &WEIGHTS], 0.0, &mut r, &mut f));
                 (r.iter().map(|r| r * r).sum::<f64>(), r, f)
             };
             let value = |p: f64| own.fitness(&simulated(p), &MEASURED, &WEIGHTS);
@@ -362,7 +361,7 @@ mod tests {
         assert!((weights_there[3] - SQRT_2 / s[3]).abs() < 1e-12);
         let (mut r, mut f) = ([0.0; 5], [0.0; 5]);
         let mut square = |p: f64| {
-            assert!(own.scaled(&simulated(p), &measured, &weights, &mut r, &mut f));
+            assert!(own.scaled([&simulated(p), &measured, &weights], 0.0, &mut r, &mut f));
             (r.iter().map(|r| r * r).sum::<f64>(), r, f)
         };
         let ratio = (value(0.3) - value(0.2)) / 2.5;

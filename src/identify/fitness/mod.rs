@@ -29,12 +29,12 @@ pub trait Fitness: Send + Sync {
     /// Where the minimum is that of a sum of squares whose factors depend on the simulation:
     /// writes residuals r with Σ r² growing with the fitness, and factors f such that
     /// 2 Σ f r ∂ŷ/∂p is the gradient of Σ r². `false`: the constant factors of
-    /// [`least_squares`](Fitness::least_squares) hold.
+    /// [`least_squares`](Fitness::least_squares) hold. Where the sum is an exponential function,
+    /// `shift` is taken from its exponent, so that the sum is finite.
     fn scaled(
         &self,
-        _simulated: &[f64],
-        _measured: &[f64],
-        _weights: &[f64],
+        [_simulated, _measured, _weights]: [&[f64]; 3],
+        _shift: f64,
         _residuals: &mut [f64],
         _factors: &mut [f64],
     ) -> bool {

@@ -33,7 +33,8 @@ fn draw<'a>(
         let count = (experiment.observations.len() - experiment.deviations).min(rest.len());
         let (own, others) = rest.split_at_mut(count);
         if let Some(curves) = curves(experiment, values, hurry) {
-            own.iter_mut().zip(curves).for_each(|(series, curve)| series.curve = curve);
+            let pairs = own.iter_mut().zip(curves).filter(|(series, _)| !series.has_no_curve);
+            pairs.for_each(|(series, curve)| series.curve = curve);
         }
         rest = others;
     }

@@ -285,6 +285,20 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
     findings
 }
 
+impl Solution {
+    /// Says again how held-out data compare, after predictions were replaced.
+    pub fn compare_validation_again(&mut self) {
+        let said: Vec<Finding> =
+            self.validation.iter().map(|own| about_validation(own, self)).collect();
+        let places = self.findings.iter_mut().filter(|own| own.kind == FindingKind::Validation);
+        for own in places {
+            if let Some(found) = said.iter().find(|other| other.series == own.series) {
+                own.clone_from(found);
+            }
+        }
+    }
+}
+
 /// Held-out data beside those of the fit.
 fn about_validation(own: &SolvedSeries, solution: &Solution) -> Finding {
     let label = match own.experiment.is_empty() {

@@ -350,40 +350,65 @@ pub struct SolvedSeries {
     /// X and a simulation from the start that sees no measurements, where the points are predictions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub simulation: Vec<[f64; 2]>,
+    /// Whether the points are no simulated values, so that no curve goes through them.
+    #[serde(skip)]
+    pub(super) has_no_curve: bool,
 }
 
 impl SolvedSeries {
     /// Puts a series beside its simulation.
     pub fn new(series: &super::Series, simulated: &[f64]) -> SolvedSeries {
-        let n = series.y.len() as f64;
         let points: Vec<[f64; 3]> =
             series.x.iter().zip(&series.y).zip(simulated).map(|((x, y), s)| [*x, *y, *s]).collect();
-        let square: f64 = points.iter().map(|p| elementary::powi(p[1] - p[2], 2)).sum();
-        let mean = series.y.iter().sum::<f64>() / n;
-        let total: f64 = series.y.iter().map(|y| elementary::powi(y - mean, 2)).sum();
-        let mut ordered = points.clone();
-        ordered.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let residuals: Vec<f64> = ordered.iter().map(|p| p[1] - p[2]).collect();
-        let test = residual_test(&residuals);
-        SolvedSeries {
+        let mut solved = SolvedSeries {
             experiment: series.experiment.clone(),
             y: [series.y_name.clone(), shown_unit(&series.y_unit)],
             x_column: series.x_column.clone(),
             x: [series.x_name.clone(), shown_unit(&series.x_unit)],
             file: series.file.clone(),
-            rmse: (square / n).sqrt(),
-            r_squared: (total > 0.0).then(|| 1.0 - square / total),
+            rmse: 0.0,
+            r_squared: None,
             sigma: None,
             sigma_estimated: series.sigma.is_estimated(),
             sigma_computed: matches!(series.sigma, super::Sigma::Variable(_)),
             deviations: Vec::new(),
-            residual_test: test
-                .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
+            residual_test: None,
             curve: Vec::new(),
             points,
             script: Vec::new(),
             simulation: Vec::new(),
+            has_no_curve: false,
+        };
+        solved.measure();
+        solved
+    }
+
+    /// What the residuals of the points say.
+    fn measure(&mut self) {
+        let n = self.points.len() as f64;
+        let square: f64 = self.points.iter().map(|p| elementary::powi(p[1] - p[2], 2)).sum();
+        let mean = self.points.iter().map(|p| p[1]).sum::<f64>() / n;
+        let total: f64 = self.points.iter().map(|p| elementary::powi(p[1] - mean, 2)).sum();
+        let mut ordered = self.points.clone();
+        ordered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let residuals: Vec<f64> = ordered.iter().map(|p| p[1] - p[2]).collect();
+        self.rmse = (square / n).sqrt();
+        self.r_squared = (total > 0.0).then(|| 1.0 - square / total);
+        self.residual_test = residual_test(&residuals)
+            .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]);
+    }
+
+    /// Compares the points with other predictions, which have these standard deviations.
+    pub fn predict(&mut self, predictions: &[[f64; 2]]) {
+        self.points.iter_mut().zip(predictions).for_each(|(point, own)| point[2] = own[0]);
+        self.curve.clear();
+        self.has_no_curve = true;
+        self.measure();
+        if !self.deviations.is_empty() {
+            self.deviations = predictions.iter().map(|own| own[1]).collect();
         }
+        let square: f64 = predictions.iter().map(|own| own[1] * own[1]).sum();
+        self.sigma = self.sigma.map(|_| (square / predictions.len() as f64).sqrt());
     }
 }
 

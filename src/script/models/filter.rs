@@ -83,8 +83,8 @@ pub(crate) enum MeasuredSigma {
 pub(crate) enum Purpose<'a> {
     /// The likelihood of what was measured.
     Likelihood,
-    /// Smoothed states at the samples and at these times.
-    Smoothing(&'a [f64]),
+    /// Smoothed states.
+    Smoothing,
     /// Predictions over several samples.
     Ahead(&'a Ahead),
 }
@@ -95,8 +95,18 @@ pub(crate) enum Purpose<'a> {
 pub(crate) struct Ahead {
     /// Over how many samples.
     pub steps: usize,
-    /// At each sample: the uncertain states, then the covariances of [`pairs`].
+    /// The times of all samples.
+    pub times: Vec<f64>,
+    /// At each of them: the uncertain states, then the covariances of [`pairs`].
     pub found: Vec<Vec<f64>>,
+}
+
+impl Ahead {
+    /// The number of a sample at this time, and of the next one where there is none; the start is 0.
+    pub(crate) fn number(&self, start: f64, time: f64) -> usize {
+        let later = self.times.iter().filter(|own| **own > start && **own < time).count();
+        later + usize::from(time > start)
+    }
 }
 
 /// A model with its filter.
@@ -115,6 +125,8 @@ pub(crate) struct UncertainStates {
     pub names: Vec<String>,
     /// Their covariances, of [`pairs`].
     pub covariances: Vec<String>,
+    /// The times of the rows, which are those of the samples and those that were asked for.
+    pub times: Vec<f64>,
     /// What a smoother needs; empty unless that is the purpose.
     pub smoothing: Smoothing,
 }
@@ -124,7 +136,8 @@ pub(crate) fn pairs(n: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..n).flat_map(|i| (0..=i).map(move |j| [i, j]))
 }
 
-/// Compiles a model with its filter, for simulations from `start` on.
+/// Compiles a model with its filter, for simulations from `start` on. `more`: times of rows besides
+/// those of the samples.
 ///
 /// # Errors
 ///
@@ -133,7 +146,7 @@ pub(crate) fn filtered(
     session: &mut Session,
     class: &str,
     (noise, measured, purpose): (&[Noise], &[Measured], Purpose<'_>),
-    start: f64,
+    (start, more): (f64, &[f64]),
     place: Span,
 ) -> Result<Filtered, Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
@@ -148,15 +161,26 @@ pub(crate) fn filtered(
     let uncertain = &uncertain;
     let names = Names::new(&uncertain.states, &outputs);
     let flat_model = &mut flat;
-    let mut filter =
-        Filter { flat: flat_model, uncertain, names, measured, purpose, start, n, channels, text };
+    let mut filter = Filter {
+        flat: flat_model,
+        uncertain,
+        names,
+        measured,
+        purpose,
+        start,
+        more,
+        n,
+        channels,
+        text,
+    };
     filter.declare(&own_noise);
     filter.record();
     filter.write(&own_noise);
     let smoothing = match purpose {
-        Purpose::Smoothing(_) => filter.smoothing(),
+        Purpose::Smoothing => filter.smoothing(),
         _ => Smoothing::default(),
     };
+    let times = filter.rows();
     let Filter { text, names, .. } = filter;
     add_equations(&mut flat, &text).map_err(|fault| vec![fault.at(place)])?;
     let mut sorted = causalize::causalize(&flat).map_err(one)?;
@@ -167,6 +191,7 @@ pub(crate) fn filtered(
         states: UncertainStates {
             names: uncertain.states.clone(),
             covariances: pairs(n).map(|pair| names.covariance(0, pair)).collect(),
+            times,
             smoothing,
         },
         translated: Translated::new(class, flat, program),
@@ -281,6 +306,8 @@ struct Filter<'a> {
     measured: &'a [Measured],
     purpose: Purpose<'a>,
     start: f64,
+    /// Times of rows besides those of the samples.
+    more: &'a [f64],
     /// Number of uncertain states.
     n: usize,
     /// Its recorded inputs.
@@ -337,7 +364,7 @@ impl Filter<'_> {
                 self.declared(&self.names.covariance(k + 1, pair), BaseType::Real, continuous);
             }
         }
-        if matches!(self.purpose, Purpose::Smoothing(_)) {
+        if matches!(self.purpose, Purpose::Smoothing) {
             self.declare_smoothing();
         }
         if self.begins_uncertain(noise) {
@@ -395,12 +422,7 @@ impl Filter<'_> {
 
     /// The times at which states are estimated.
     fn rows(&self) -> Vec<f64> {
-        match self.purpose {
-            Purpose::Smoothing(more) => {
-                ascending(self.samples().into_iter().chain(more.iter().copied()))
-            }
-            _ => self.samples(),
-        }
+        ascending(self.samples().into_iter().chain(self.more.iter().copied()))
     }
 
     /// Makes inputs of what was measured: between two samples they hold that of the second one, so that at
@@ -432,12 +454,15 @@ impl Filter<'_> {
 
     /// The same for the states from which predictions over several samples begin.
     fn record_found(&mut self, ahead: &Ahead, knots: &[f64]) {
-        let remainders = (0..knots.len()).map(|number| (number % ahead.steps) as f64);
-        self.follow(REMAINDER, BaseType::Real, (knots, later(remainders)));
-        // Without a sample at the start the first one is the second knot.
-        let before = knots.len() - ahead.found.len();
+        let sample = |time: &f64| ahead.times.binary_search_by(|own| own.total_cmp(time)).ok();
+        // No prediction begins where there is no sample.
+        let remainder = |time: &f64| {
+            sample(time).map_or(-1.0, |_| (ahead.number(self.start, *time) % ahead.steps) as f64)
+        };
+        let remainders = later(knots.iter().map(remainder));
+        self.follow(REMAINDER, BaseType::Real, (knots, remainders));
         for (at, name) in self.found().iter().enumerate() {
-            let values = (0..knots.len()).map(|k| ahead.found[k.saturating_sub(before)][at]);
+            let values = knots.iter().map(|time| ahead.found[sample(time).unwrap_or(0)][at]);
             self.follow(&recorded(name), BaseType::Real, (knots, later(values)));
         }
     }
@@ -480,7 +505,7 @@ impl Filter<'_> {
             _ => self.update(),
         }
         self.predictions();
-        let is_smoothed = matches!(self.purpose, Purpose::Smoothing(_));
+        let is_smoothed = matches!(self.purpose, Purpose::Smoothing);
         if is_smoothed {
             self.hold();
             for [i, j] in entries(self.n) {
@@ -510,7 +535,6 @@ impl Filter<'_> {
             of_output.map(|own| (own.1, held(&gain(*own)))).collect()
         };
         Smoothing {
-            times: self.rows(),
             transitions: entries(n).map(|entry| self.names.transition(entry)).collect(),
             products: outputs.clone().map(products).collect(),
             gains: outputs.map(gains).collect(),

@@ -50,7 +50,7 @@ fn run(
     session.load_text("Model.mo", model).unwrap();
     let class = model.split_whitespace().nth(1).unwrap();
     let what = (noise, measured, Purpose::Likelihood);
-    let found = filtered(&mut session, class, what, 0.0, Span::NONE).unwrap();
+    let found = filtered(&mut session, class, what, (0.0, &[]), Span::NONE).unwrap();
     let model = CompiledModel::new(class, found.translated.program.clone());
     let mut settings = model.settings();
     settings.tolerance = 1e-10;

@@ -20,8 +20,6 @@ use nalgebra::{DMatrix, DVector};
 /// Variables of a filtered model that a smoother needs. All hold their values from one row to the next.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Smoothing {
-    /// The times of the rows.
-    pub times: Vec<f64>,
     /// Φ from the row before, by rows.
     pub transitions: Vec<String>,
     /// For each output P hᵀ before its sample.

@@ -44,6 +44,8 @@ pub(super) struct Built {
     /// The uncertain states of each of these, where they are filtered.
     pub states: Vec<UncertainStates>,
     pub validation: Vec<(Experiment, Vec<Series>)>,
+    /// The uncertain states of each of these.
+    pub validation_states: Vec<UncertainStates>,
     /// The problem, its data, and every Modelica text that was read for it.
     pub origins: Origins,
     /// What should be known of the data.
@@ -74,6 +76,8 @@ struct Experiments {
     states: Vec<UncertainStates>,
     series: Vec<Series>,
     validation: Vec<(Experiment, Vec<Series>)>,
+    /// The uncertain states of each of these.
+    validation_states: Vec<UncertainStates>,
     rests: Vec<[Experiment; 2]>,
     /// The relative error of simulated values.
     noise: f64,
@@ -123,6 +127,7 @@ fn build_in(
         states,
         series,
         validation,
+        validation_states,
         rests,
         noise,
         calibration,
@@ -153,6 +158,7 @@ fn build_in(
         experiments,
         states,
         validation,
+        validation_states,
         origins,
         notes,
         calibration,
@@ -367,6 +373,7 @@ fn experiments(
         }
         if entry.validation {
             all.validation.push((built.experiment, built.series));
+            all.validation_states.push(built.states);
             continue;
         }
         all.rests.extend(rest::both(entry, &built.experiment));
@@ -471,7 +478,9 @@ fn likelihood_alone(
     let allowed = match &file.fitness {
         None => true,
         Some(OneOrMany::One(name)) => known(name),
-        Some(OneOrMany::Many(_) | OneOrMany::Set(_)) => false,
+        // A record has a vector of them.
+        Some(OneOrMany::Many(names)) => matches!(names.as_slice(), [name] if known(name)),
+        Some(OneOrMany::Set(_)) => false,
     };
     if !allowed {
         let fault = fault!(

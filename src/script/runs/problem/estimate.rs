@@ -4,12 +4,12 @@
 use super::build::{FilteredExperiment, filtered_experiments};
 use super::data::Note;
 use super::file::{Filtering, MoreTimes, ProblemFile};
-use super::{file, refusal};
+use super::{file, noise, refusal};
 use crate::Session;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::identify::problem::{
-    Experiment, Free, ModelSimulator, Observation, Series, Simulate, SolvedState,
+    Experiment, Free, ModelSimulator, Observation, Series, Simulate, SolvedSeries, SolvedState,
 };
 use crate::models::filter::{Ahead, FIRST_BEGIN, UncertainStates, pairs};
 use crate::models::imported::refuse_as_text;
@@ -97,13 +97,13 @@ pub fn estimate(
     };
     let (chosen, values, notes) = with(Filtering::Smoothed(more))?;
     let found = Estimation::of(&chosen, &values).map_err(one)?;
-    let (simulated, ..) = with(Filtering::Simulated)?;
+    let (simulated, ..) = with(Filtering::Simulated(more))?;
     let mut others = vec![("simulated".to_owned(), predictions(&simulated, &values).map_err(one)?)];
     if let Some(steps) = options.steps {
         let ahead = found.ahead(steps).map_err(one)?;
         let name = chosen.experiment.name.clone();
-        let (run, ..) = with(Filtering::Ahead(name, ahead))?;
-        let predicted = found.predicted_over(steps, &run, &values).map_err(one)?;
+        let (run, ..) = with(Filtering::Ahead(name, ahead.clone(), more))?;
+        let predicted = found.predicted_over(&ahead, &run, &values).map_err(one)?;
         others.push((format!("predicted over {steps}"), predicted));
     }
     notes.iter().for_each(|note| note.say(session));
@@ -125,7 +125,7 @@ fn prepared(
         Some(values) => found(session, values).map_err(one)?,
         None => Vec::new(),
     };
-    let values = given(&free, &known).map_err(one)?;
+    let values = given(&free, &known, &noise::invented(file)).map_err(one)?;
     Ok((chosen(experiments, options.experiment).map_err(one)?, values, notes))
 }
 
@@ -143,18 +143,19 @@ fn found(session: &Session, path: &Path) -> Result<Vec<(String, f64)>, Fault> {
     Ok(parameters.iter().filter_map(one).collect())
 }
 
-/// The values of the free parameters.
-fn given(free: &[Free], known: &[(String, f64)]) -> Result<Vec<f64>, Fault> {
+/// The values of the free parameters. `invented`: those that start where the program thinks best.
+fn given(free: &[Free], known: &[(String, f64)], invented: &[String]) -> Result<Vec<f64>, Fault> {
     let value = |own: &Free| {
         let known = known.iter().find(|(name, _)| *name == own.name).map(|(_, value)| *value);
-        known.or(own.start)
+        known.or(own.start.filter(|_| !invented.contains(&own.name)))
     };
     let missing: Vec<&str> =
         free.iter().filter(|own| value(own).is_none()).map(|own| own.name.as_str()).collect();
     if !missing.is_empty() {
         let names = suggest::listed(&missing);
         return Err(fault!(BAD_OPTION, "no value is given for {names}").help(
-            "write `fixed` or `start` in the problem, or give the `result.json` of a fit: `--values FILE`",
+            "write a number in the problem, as `fixed` or `start` of a parameter, or give the \
+             `result.json` of a fit: `--values FILE`",
         ));
     }
     Ok(free.iter().filter_map(value).collect())
@@ -197,10 +198,12 @@ fn simulated(
     Ok(sizes.into_iter().map(|size| all.by_ref().take(size).collect()).collect())
 }
 
-/// For each output its predictions at its samples, and their standard deviations.
+/// For each output its predictions at all rows, and their standard deviations.
 fn predictions(chosen: &FilteredExperiment, values: &[f64]) -> Result<Vec<[Vec<f64>; 2]>, Fault> {
     let experiment = &chosen.experiment;
-    let mut columns = simulated(experiment, values, experiment.observations.clone())?.into_iter();
+    let at_rows = |own: &Observation| Observation { x: chosen.states.times.clone(), ..own.clone() };
+    let observations = experiment.observations.iter().map(at_rows).collect();
+    let mut columns = simulated(experiment, values, observations)?.into_iter();
     let outputs = experiment.observations.len() - experiment.deviations;
     let means: Vec<Vec<f64>> = columns.by_ref().take(outputs).collect();
     Ok(means.into_iter().zip(columns).map(|(mean, sd)| [mean, sd]).collect())
@@ -226,7 +229,7 @@ impl<'a> Estimation<'a> {
         values: &[f64],
     ) -> Result<Estimation<'a>, Fault> {
         let FilteredExperiment { experiment, series, states } = chosen;
-        let times = &states.smoothing.times;
+        let times = &states.times;
         let series: Vec<&Series> = series.iter().filter(|own| own.is_data()).collect();
         let at_rows = |name: &String| Observation { y_name: name.clone(), x: times.clone() };
         let smoothing = &states.smoothing;
@@ -323,6 +326,25 @@ impl<'a> Estimation<'a> {
         (mean - moved, variance.sqrt())
     }
 
+    /// The same at all rows.
+    fn all_from_earlier_rows(&self, output: usize) -> (Vec<f64>, Vec<f64>) {
+        (0..self.times.len()).map(|at| self.from_earlier_rows(output, at)).unzip()
+    }
+
+    /// Puts predictions from earlier rows alone in the place of those that the likelihood compares, which
+    /// have seen the outputs before them in their rows; the first output has none before it.
+    pub(super) fn predict(&self, solved: &mut [SolvedSeries]) {
+        for (k, solved) in solved.iter_mut().enumerate().skip(1) {
+            let (means, deviations) = self.all_from_earlier_rows(k);
+            let at = |time: &f64| self.times.binary_search_by(|own| own.total_cmp(time)).ok();
+            let found: Option<Vec<usize>> = self.series[k].x.iter().map(at).collect();
+            if let Some(places) = found {
+                let pairs = places.into_iter().map(|at| [means[at], deviations[at]]);
+                solved.predict(&pairs.collect::<Vec<_>>());
+            }
+        }
+    }
+
     /// The rows with samples.
     fn sampled(&self) -> impl Iterator<Item = (f64, &Row)> {
         let rows = self.times.iter().copied().zip(&self.rows);
@@ -340,32 +362,30 @@ impl<'a> Estimation<'a> {
             let covariances = pairs(row.state.len()).map(|[i, j]| row.covariance[(i, j)]);
             row.state.iter().copied().chain(covariances).collect()
         };
-        Ok(Ahead { steps, found: self.sampled().map(|(_, row)| one(row)).collect() })
+        let times = self.sampled().map(|own| own.0).collect();
+        Ok(Ahead { steps, times, found: self.sampled().map(|(_, row)| one(row)).collect() })
     }
 
     /// Predictions over so many samples; not a number where there were not so many before.
     fn predicted_over(
         &self,
-        steps: usize,
+        ahead: &Ahead,
         run: &FilteredExperiment,
         values: &[f64],
     ) -> Result<Vec<[Vec<f64>; 2]>, Fault> {
         let mut experiment = run.experiment.clone();
         experiment.parameters.push((values.len(), FIRST_BEGIN.to_owned()));
         let run = FilteredExperiment { experiment, ..run.clone() };
-        let start = self.experiment.settings.start;
-        let later = self.sampled().map(|own| own.0).filter(|time| *time > start);
-        let knots: Vec<f64> = std::iter::once(start).chain(later).collect();
-        let number =
-            |time: &f64| knots.binary_search_by(|own| own.total_cmp(time)).unwrap_or_default();
-        let nothing = |own: &&Series| [(); 2].map(|()| vec![f64::NAN; own.x.len()]);
-        let mut all: Vec<[Vec<f64>; 2]> = self.series.iter().map(nothing).collect();
+        let (steps, start) = (ahead.steps, self.experiment.settings.start);
+        let numbers = self.times.iter().map(|time| ahead.number(start, *time));
+        let numbers: Vec<usize> = numbers.collect();
+        let nothing = || [(); 2].map(|()| vec![f64::NAN; numbers.len()]);
+        let mut all: Vec<[Vec<f64>; 2]> = self.series.iter().map(|_| nothing()).collect();
         for begin in 0..steps {
             let found = predictions(&run, &[values, &[begin as f64]].concat())?;
-            for ((own, all), found) in self.series.iter().zip(&mut all).zip(&found) {
-                for (at, time) in own.x.iter().enumerate() {
-                    let number = number(time);
-                    if number >= steps && number % steps == begin {
+            for (all, found) in all.iter_mut().zip(&found) {
+                for (at, number) in numbers.iter().enumerate() {
+                    if *number >= steps && number % steps == begin {
                         (all[0][at], all[1][at]) = (found[0][at], found[1][at]);
                     }
                 }
@@ -374,7 +394,7 @@ impl<'a> Estimation<'a> {
         Ok(all)
     }
 
-    /// The table. `others`: further predictions of the outputs at their samples.
+    /// The table. `others`: further predictions of the outputs at all rows.
     fn table(&self, others: &[(String, Vec<[Vec<f64>; 2]>)]) -> Estimated {
         let times = &self.times;
         let mut made = Table { times, table: ResultTable::new(times.clone()), shown: Vec::new() };
@@ -389,15 +409,14 @@ impl<'a> Estimation<'a> {
         for (k, own) in self.series.iter().enumerate() {
             let (name, unit) = (&own.y_name, &own.y_unit);
             let [mean, sd] = &self.predictions[k];
-            let before = (0..times.len()).map(|at| self.from_earlier_rows(k, at));
-            let (means, deviations): (Vec<f64>, Vec<f64>) = before.unzip();
+            let (means, deviations) = self.all_from_earlier_rows(k);
             let value =
                 made.pair(&format!("predicted({name})"), unit, (times, &means, &deviations));
             let measured = made.column(&format!("measured({name})"), unit, (&own.x, &own.y));
             let mut shown = Shown { value, measured: Some(measured), ..Shown::default() };
             for (what, found) in others {
                 let [mean, sd] = &found[k];
-                let [title, _] = made.pair(&format!("{what}({name})"), unit, (&own.x, mean, sd));
+                let [title, _] = made.pair(&format!("{what}({name})"), unit, (times, mean, sd));
                 shown.predicted.push(title);
             }
             made.shown.push(shown);

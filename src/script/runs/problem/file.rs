@@ -263,12 +263,12 @@ pub(super) enum Filtering {
     Filtered,
     /// Measurements and the noise that is given; what is estimated is 0.
     WithoutNoise,
-    /// No measurements.
-    Simulated,
-    /// Noise and measurements, and after them those that are later; also at these times.
+    /// No measurements; also at these times, as in what follows.
+    Simulated(MoreTimes),
+    /// Noise and measurements, and after them those that are later.
     Smoothed(MoreTimes),
     /// In the experiment of this name, the states that the filter has found so many samples before.
-    Ahead(String, Ahead),
+    Ahead(String, Ahead, MoreTimes),
 }
 
 /// Times at which states are estimated besides those of the rows.

@@ -51,25 +51,26 @@ pub(super) fn filtered(
             times: own.x.clone(),
             values: own.y.clone(),
             sigma: sigma(output, own),
-            is_used: !matches!(file.filtering, Filtering::Simulated | Filtering::Ahead(..)),
+            is_used: !matches!(file.filtering, Filtering::Simulated(_) | Filtering::Ahead(..)),
         })
         .collect();
     let start = experiment.settings.start;
     note_certain_start(file, (&noise, &measured, start), &experiment.name, notes);
     let place = file.places.at(&["noise"]);
     let more = match &file.filtering {
-        Filtering::Smoothed(more) => {
+        Filtering::Smoothed(more) | Filtering::Simulated(more) | Filtering::Ahead(_, _, more) => {
             times(entry, rows, start, *more).at(Span::NONE).map_err(one)?
         }
-        _ => Vec::new(),
+        Filtering::Filtered | Filtering::WithoutNoise => Vec::new(),
     };
     experiment.settings.stop = more.iter().copied().fold(experiment.settings.stop, f64::max);
     let purpose = match &file.filtering {
-        Filtering::Smoothed(_) => Purpose::Smoothing(&more),
-        Filtering::Ahead(name, ahead) if *name == experiment.name => Purpose::Ahead(ahead),
+        Filtering::Smoothed(_) => Purpose::Smoothing,
+        Filtering::Ahead(name, ahead, _) if *name == experiment.name => Purpose::Ahead(ahead),
         _ => Purpose::Likelihood,
     };
-    let found = filter::filtered(session, class, (&noise, &measured, purpose), start, place)?;
+    let what = (&noise[..], &measured[..], purpose);
+    let found = filter::filtered(session, class, what, (start, &more), place)?;
     let program = found.translated.program.clone();
     experiment.model = Arc::new(CompiledModel::new(&file.model, program.clone()));
     experiment.deviations = found.outputs.len();

@@ -153,6 +153,12 @@ fn place(file: &ProblemFile, of: &Subject) -> Span {
     }
 }
 
+/// The names of the parameters that noise adds and that the problem gives no start.
+pub(super) fn invented(file: &ProblemFile) -> Vec<String> {
+    let own = own_parameters(file).unwrap_or_default().into_iter();
+    own.filter(|own| own.start.is_none()).map(|own| own.name).collect()
+}
+
 /// The names of the densities that are estimated.
 pub(super) fn estimated(file: &ProblemFile) -> Vec<String> {
     let own = own_parameters(file).unwrap_or_default().into_iter();

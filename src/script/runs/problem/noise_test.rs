@@ -23,7 +23,12 @@ pub(super) fn compare(
     names: &[String],
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if solution.outcome.ending.kind != EndingKind::Minimum || session.world.interrupted() {
+    if session.world.interrupted() {
+        return Ok(());
+    }
+    let is_minimum = solution.outcome.ending.kind == EndingKind::Minimum;
+    follow(session, solution, is_minimum, again)?;
+    if !is_minimum {
         return Ok(());
     }
     let mut without = None;
@@ -43,26 +48,56 @@ pub(super) fn compare(
             solution.findings.push(finding);
         }
     }
-    let change = |file: &mut ProblemFile| file.filtering = Filtering::Simulated;
+    let change =
+        |file: &mut ProblemFile| file.filtering = Filtering::Simulated(MoreTimes::default());
     let other = again(session, Change::Entries(&change))?;
     solution.effort.simulations_for_statistics += 1;
     let values: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
     let simulated = simulated(&other.problem, &values)?;
     solution.judge_noise(&NoiseComparison { names, without, simulated });
+    Ok(())
+}
+
+/// Predicts all outputs from earlier rows, and estimates the states from all data where `is_minimum`.
+fn follow(
+    session: &mut Session,
+    solution: &mut Solution,
+    is_minimum: bool,
+    again: &mut Again<'_>,
+) -> Result<(), Fault> {
+    let values: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
     let change =
         |file: &mut ProblemFile| file.filtering = Filtering::Smoothed(MoreTimes::default());
     let other = again(session, Change::Entries(&change))?;
     solution.effort.simulations_for_statistics += 1;
     let all = with_states(other.experiments, other.states, other.problem.series);
+    let mut rest = &mut solution.series[..];
     for own in &all {
+        let series;
+        (series, rest) = rest.split_at_mut(own.experiment.deviations.min(rest.len()));
         match Estimation::of(own, &values) {
-            Ok(found) => solution.inferred.states.extend(found.states()),
+            Ok(found) => {
+                found.predict(series);
+                solution.inferred.states.extend(found.states().into_iter().filter(|_| is_minimum));
+            }
             Err(fault) => {
                 let sentence = format!("The states are not smoothed: {}.", fault.message);
                 solution.findings.push(Finding::new(FindingKind::ProcessNoise, sentence));
             }
         }
     }
+    let (experiments, series): (Vec<_>, Vec<_>) = other.validation.into_iter().unzip();
+    let series = series.into_iter().flatten().collect();
+    let mut rest = &mut solution.validation[..];
+    for own in &with_states(experiments, other.validation_states, series) {
+        let series;
+        (series, rest) = rest.split_at_mut(own.experiment.deviations.min(rest.len()));
+        // What cannot be simulated has been said.
+        if let (true, Ok(found)) = (series.len() > 1, Estimation::of(own, &values)) {
+            found.predict(series);
+        }
+    }
+    solution.compare_validation_again();
     Ok(())
 }
 

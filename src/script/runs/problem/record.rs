@@ -121,19 +121,7 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     if !x.is_empty() {
         put(&mut entry, "x", x);
     }
-    let names: Vec<String> = fields.get("outputs")?;
-    let columns: Vec<String> = fields.get("columns")?;
-    let weights: Vec<f64> = fields.get("weights")?;
-    same_size("outputs", names.len(), "columns", columns.len())?;
-    same_size("outputs", names.len(), "weights", weights.len())?;
-    let mut outputs = Table::new();
-    for ((name, column), weight) in names.into_iter().zip(columns).zip(weights) {
-        let mut output = Table::new();
-        put(&mut output, "column", column);
-        put(&mut output, "weight", weight);
-        put(&mut outputs, &name, output);
-    }
-    put(&mut entry, "outputs", outputs);
+    put(&mut entry, "outputs", outputs(fields)?);
     let inputs: Vec<String> = fields.get("inputs")?;
     let columns: Vec<String> = fields.get("inputColumns")?;
     same_size("inputs", inputs.len(), "inputColumns", columns.len())?;
@@ -156,6 +144,30 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     }
     put_number(&mut entry, "tolerance", fields.get("tolerance")?);
     Ok(entry)
+}
+
+/// The outputs of an experiment; a sigma of 0 is not known.
+fn outputs(fields: &Fields<'_>) -> Result<Table, Fault> {
+    let names: Vec<String> = fields.get("outputs")?;
+    let columns: Vec<String> = fields.get("columns")?;
+    let weights: Vec<f64> = fields.get("weights")?;
+    same_size("outputs", names.len(), "columns", columns.len())?;
+    same_size("outputs", names.len(), "weights", weights.len())?;
+    let mut sigmas: Vec<f64> = fields.get("sigmas")?;
+    if sigmas.is_empty() {
+        sigmas.resize(names.len(), 0.0);
+    }
+    same_size("outputs", names.len(), "sigmas", sigmas.len())?;
+    let mut outputs = Table::new();
+    let columns = columns.into_iter().zip(weights.into_iter().zip(sigmas));
+    for (name, (column, (weight, sigma))) in names.into_iter().zip(columns) {
+        let mut output = Table::new();
+        put(&mut output, "column", column);
+        put(&mut output, "weight", weight);
+        put_number(&mut output, "sigma", sigma);
+        put(&mut outputs, &name, output);
+    }
+    Ok(outputs)
 }
 
 /// The spectrum that was measured; empty where it is a course of time.
