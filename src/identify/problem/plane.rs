@@ -18,6 +18,8 @@ pub(crate) struct SpectrumFigures<'a> {
 
 /// Frequency, real and imaginary part.
 type Point = [f64; 3];
+/// What of a point is drawn along each axis.
+type Coordinates = (fn(&Point) -> f64, fn(&Point) -> f64);
 
 /// Pictures for each experiment of which real and imaginary parts were measured.
 pub(crate) fn planes(all: &[SolvedSeries]) -> Vec<SpectrumFigures<'_>> {
@@ -59,7 +61,7 @@ fn curves(parts: [&SolvedSeries; 2]) -> [Vec<Point>; 3] {
 fn series(
     name: &str,
     points: &[Point],
-    (x, y): (fn(&Point) -> f64, fn(&Point) -> f64),
+    (x, y): Coordinates,
     (mark, colour): (Mark, usize),
 ) -> Series {
     Series {
@@ -75,7 +77,7 @@ fn plane(real: &SolvedSeries, imaginary: &SolvedSeries) -> Figure {
     let [measured, _, simulated] = curves([real, imaginary]);
     let [x, y] = [("real part", real), ("\u{2212}imaginary part", imaginary)]
         .map(|(label, own)| Axis::linear(label, &own.y[1]));
-    let parts: (fn(&Point) -> f64, fn(&Point) -> f64) = (|own| own[1], |own| -own[2]);
+    let parts: Coordinates = (|own| own[1], |own| -own[2]);
     let dots = of_points(real.points.len());
     let all = vec![
         series("simulated", &simulated, parts, (Mark::Line, 1)),
@@ -106,7 +108,7 @@ fn bode(real: &SolvedSeries, imaginary: &SolvedSeries) -> Figure {
         y,
         ..series("", points, (|own| own[0], |own| own[0]), (mark, colour))
     };
-    let of_magnitude: (fn(&Point) -> f64, fn(&Point) -> f64) = (|own| own[0], magnitude);
+    let of_magnitude: Coordinates = (|own| own[0], magnitude);
     let magnitudes = vec![
         series("simulated", &simulated, of_magnitude, (Mark::Line, 1)),
         series("measured", &measured, of_magnitude, dots),

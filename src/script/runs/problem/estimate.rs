@@ -310,7 +310,7 @@ impl<'a> Estimation<'a> {
 
     /// The prediction of an output from earlier rows alone, and its standard deviation: the filter takes
     /// the outputs of a row one after the other, and the ones before it have moved its own.
-    fn from_earlier_rows(&self, output: usize, at: usize) -> (f64, f64) {
+    fn by_earlier_rows(&self, output: usize, at: usize) -> (f64, f64) {
         let row = &self.rows[at];
         let [mean, sd] = self.predictions[output].each_ref().map(|own| own[at]);
         let gain = &row.gains[output];
@@ -328,7 +328,7 @@ impl<'a> Estimation<'a> {
 
     /// The same at all rows.
     fn all_from_earlier_rows(&self, output: usize) -> (Vec<f64>, Vec<f64>) {
-        (0..self.times.len()).map(|at| self.from_earlier_rows(output, at)).unzip()
+        (0..self.times.len()).map(|at| self.by_earlier_rows(output, at)).unzip()
     }
 
     /// Puts predictions from earlier rows alone in the place of those that the likelihood compares, which

@@ -15,6 +15,9 @@ use crate::registry::BAD_OPTION;
 use crate::units::in_words;
 use crate::{bail, fault};
 
+/// Measured values, and those of them that are limits.
+type WithLimits = (Vec<f64>, Vec<(usize, Law)>);
+
 /// What the outputs of an experiment are compared over.
 pub(super) struct Comparison<'a> {
     /// The name of the experiment.
@@ -101,7 +104,7 @@ impl Comparison<'_> {
         y_name: &str,
         requested: &ColumnEntry,
         (rows, measured): (&[usize], &Measured),
-    ) -> Result<(Vec<f64>, Vec<(usize, Law)>), Fault> {
+    ) -> Result<WithLimits, Fault> {
         let mut y: Vec<f64> = rows.iter().map(|row| measured.values[*row]).collect();
         let mut found = Vec::new();
         for (entry, law) in [(&requested.below, Law::Below), (&requested.above, Law::Above)] {
