@@ -235,6 +235,7 @@ impl System {
         let program = self.program.clone();
         let mut relations = program.switching.relations.iter().zip(&noted.relations);
         let is_of_this_point = !noted.solved.is_empty()
+            && noted.relations.len() == program.switching.relations.len()
             && self.is_loaded(noted.time, &noted.y)
             && relations.all(|(own, value)| self.registers[own.register as usize] == *value);
         if is_of_this_point {
@@ -329,6 +330,7 @@ impl System {
     pub fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
         self.messages.lacking = None;
+        self.loops.at_event.time = f64::NAN;
         self.registers.calls.restart();
         let solvers = self.loops.initial_solvers.iter_mut().chain(&mut self.loops.solvers);
         solvers.chain(&mut self.loops.event_solvers).for_each(LoopSolver::forget);
