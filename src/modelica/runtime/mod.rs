@@ -51,6 +51,7 @@ mod sensitivity_state;
 mod simulation_log;
 mod singular_systems;
 mod sliding;
+mod solution_at_event;
 mod state;
 mod state_selection;
 mod stuck_loops;

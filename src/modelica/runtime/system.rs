@@ -5,9 +5,7 @@ use super::instants::{Change, Stage, either, same_time};
 use super::newton::{Attempts, LoopSolver};
 use super::partial_observation::OtherVariables;
 use super::sensitivity_state::Sensitivity;
-use super::state::{
-    DelayState, EventState, LoopState, MessageState, OutputState, RelationState, SolutionAtEvent,
-};
+use super::state::{DelayState, EventState, LoopState, MessageState, OutputState, RelationState};
 use super::state_selection::Choice;
 use crate::codegen::code::{Assertions, LogAssertion, Step};
 use crate::codegen::memory::Memory;
@@ -206,49 +204,8 @@ impl System {
         Ok(())
     }
 
-    /// Keeps a solution for iteration variables that y holds: it is asked for where an event is located.
-    /// Not where more than the unknowns and the relations decides it.
-    fn note_solution(&mut self, t: f64, y: &[f64]) {
-        let Program { events, sorted, continuous, switching, .. } = &*self.program;
-        let is_determined = events.is_empty()
-            && events.roundings.is_empty()
-            && sorted.dae.events.recordings.is_empty()
-            && self.sensitivity.is_none();
-        if !is_determined || y.len() != continuous.unknowns.len() {
-            return;
-        }
-        let registers = &self.registers;
-        let value = |register: u32| registers[register as usize];
-        let noted = &mut self.loops.at_event;
-        noted.time = t;
-        noted.y.clear();
-        noted.y.extend_from_slice(y);
-        noted.relations.clear();
-        noted.relations.extend(switching.relations.iter().map(|own| value(own.register)));
-        noted.solved.clear();
-        noted.solved.extend(self.program.solved_variables().map(|variable| value(variable.0)));
-    }
-
-    /// Takes the solution that was noted for the unknowns and relations at hand; whether there is one.
-    pub(super) fn take_noted_solution(&mut self) -> bool {
-        let noted = std::mem::take(&mut self.loops.at_event);
-        let program = self.program.clone();
-        let mut relations = program.switching.relations.iter().zip(&noted.relations);
-        let is_of_this_point = !noted.solved.is_empty()
-            && noted.relations.len() == program.switching.relations.len()
-            && self.is_loaded(noted.time, &noted.y)
-            && relations.all(|(own, value)| self.registers[own.register as usize] == *value);
-        if is_of_this_point {
-            for (variable, value) in program.solved_variables().zip(&noted.solved) {
-                self.registers[variable.0 as usize] = *value;
-            }
-        }
-        self.loops.at_event = SolutionAtEvent { time: f64::NAN, ..noted };
-        is_of_this_point
-    }
-
     /// Whether the registers hold these bits.
-    fn is_loaded(&self, t: f64, y: &[f64]) -> bool {
+    pub(super) fn is_loaded(&self, t: f64, y: &[f64]) -> bool {
         let is_held =
             |register: usize, value: f64| self.registers[register].to_bits() == value.to_bits();
         let mut unknowns = self.program.continuous.unknowns.iter().zip(y);
