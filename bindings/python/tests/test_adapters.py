@@ -53,8 +53,8 @@ def test_jax(single, double):
     np.testing.assert_allclose(batch[:2], exact(rows[:2]), rtol=1e-7)
     # A row whose simulation fails is not a number.
     assert np.isnan(batch[2]).all()
-    slopes = jax.vmap(jax.grad(objective))(rows[:2])
-    np.testing.assert_allclose(slopes[1], difference(loss, rows[1]), rtol=1e-6)
+    gradients = jax.vmap(jax.grad(objective))(rows[:2])
+    np.testing.assert_allclose(gradients[1], difference(loss, rows[1]), rtol=1e-6)
     two = function(double)
     np.testing.assert_allclose(two(AT)[:, 1], 2 * exact(AT), rtol=1e-7)
     assert jax.jacrev(two)(AT).shape == (8, 2, 2)

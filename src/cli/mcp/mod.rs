@@ -128,7 +128,7 @@ fn requested(calls: &Calls, id: &Value, method: &str, params: &Value) {
             Some(name) => calls.begin(id, name, params),
             None => {
                 let message =
-                    format!("there is no tool {}; `tools/list` lists them", params["name"]);
+                    format!("unknown tool {}: `tools/list` has those that exist", params["name"]);
                 calls.refuse(id, INVALID_PARAMS, &message);
             }
         },

@@ -250,7 +250,7 @@ impl Tools {
     /// Does the work of a tool.
     pub(super) fn call(&self, name: &str, given: &Value, stop: &Stop) -> Answer {
         let Some(tool) = TOOLS.iter().find(|tool| tool.name == name) else {
-            return Answer::error(format!("there is no tool `{name}`"));
+            return Answer::error(format!("unknown tool `{name}`"));
         };
         let known: Vec<&str> = tool.arguments.iter().map(|own| own.0).collect();
         let none = Map::new();

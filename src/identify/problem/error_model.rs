@@ -122,7 +122,7 @@ impl ErrorModel {
     }
 }
 
-/// Whether the likelihood of series is no sum of squares though no deviation is estimated.
+/// Whether the likelihood of series is not a sum of squares though no deviation is estimated.
 fn is_computed(series: &[Series]) -> bool {
     series.iter().any(|own| matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal())
 }

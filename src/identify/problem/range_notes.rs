@@ -100,7 +100,7 @@ pub(super) fn leave_out_remedy(finding: &mut Finding) {
 /// What to do about a range that ends before the best value.
 pub(super) fn remedy(parameter: &SolvedParameter) -> String {
     if parameter.name.starts_with(NOISE_OF) && parameter.at_bound && !is_upper(parameter) {
-        // Less noise is no noise.
+        // The range ends at the least noise: it vanishes.
         return "Without this noise the data are explained as well: remove it from `[noise]`."
             .to_owned();
     }

@@ -512,7 +512,7 @@ fn is_without_noise(run: &Run, statistics: &Statistics) -> bool {
 }
 
 /// By how much the weighted sum of squares of a simulation, as the statistics have it, or twice the
-/// negative log-likelihood where that is no sum of squares, exceeds that of the fit.
+/// negative log-likelihood where that is not a sum of squares, exceeds that of the fit.
 fn rise(run: &Run, statistics: &Statistics, row: &[f64]) -> f64 {
     if ErrorModel::of(&run.problem) == ErrorModel::Computed || !run.problem.is_normal() {
         let least = run.observed.best.as_ref().map_or(f64::NAN, |best| best.fitness);

@@ -455,7 +455,7 @@ impl Filter<'_> {
     /// The same for the states from which predictions over several samples begin.
     fn record_found(&mut self, ahead: &Ahead, knots: &[f64]) {
         let sample = |time: &f64| ahead.times.binary_search_by(|own| own.total_cmp(time)).ok();
-        // No prediction begins where there is no sample.
+        // Predictions begin at samples alone.
         let remainder = |time: &f64| {
             sample(time).map_or(-1.0, |_| (ahead.number(self.start, *time) % ahead.steps) as f64)
         };

@@ -110,11 +110,14 @@ impl Linear {
         let [_, names, outputs] = &self.names;
         if inputs.is_empty() || outputs.is_empty() {
             let what = if inputs.is_empty() { "input" } else { "output" };
-            return Err(fault!(BAD_OPTION, "the model has no {what}, so there is no response")
-                .help(match inputs.is_empty() {
-                    true => "declare one at the top level: `input Real u;`",
-                    false => "name a variable: `--output v`",
-                }));
+            return Err(fault!(
+                BAD_OPTION,
+                "a response needs an input and an output, and the model has no {what}"
+            )
+            .help(match inputs.is_empty() {
+                true => "declare one at the top level: `input Real u;`",
+                false => "name a variable: `--output v`",
+            }));
         }
         let mut found = Vec::new();
         for &input in inputs {

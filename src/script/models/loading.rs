@@ -69,7 +69,7 @@ impl Session {
         let inside: Vec<PathBuf> = inside
             .filter(|path| is_package(path) || path.extension().is_some_and(|e| e == "mo"))
             .collect();
-        // What a link in the folder leads to was not named: that it is there is no permission to read it.
+        // What a link in the folder leads to was not named: its being there does not allow to read it.
         let leads_out = |path: &PathBuf| self.world.is_link(path) && !self.sees(path);
         let (links, files): (Vec<PathBuf>, Vec<PathBuf>) = inside.into_iter().partition(leads_out);
         for link in links {

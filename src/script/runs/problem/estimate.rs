@@ -468,7 +468,7 @@ impl Table<'_> {
         [self.column(name, unit, (x, values)), self.column(&of_sd, unit, (x, sd))]
     }
 
-    /// Adds a column over some of the times; where there is no value, it is not a number.
+    /// Adds a column over some of the times, with NaN elsewhere.
     fn column(&mut self, name: &str, unit: &str, (x, values): (&[f64], &[f64])) -> String {
         let at = |time: &f64| {
             x.binary_search_by(|own| own.total_cmp(time)).ok().map_or(f64::NAN, |at| values[at])
