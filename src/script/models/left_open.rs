@@ -13,7 +13,8 @@ use crate::syntax::ast::{
 const OPEN: &[&str] = &["parameter-without-value", "value-needed", "partial-class"];
 
 /// What follows from these where a declaration could not be made sense of.
-const CONSEQUENCES: &[&str] = &["not-constant", "unknown-name", "size-mismatch"];
+const CONSEQUENCES: &[&str] =
+    &["not-constant", "unknown-name", "size-mismatch", "conditional-component"];
 
 /// Parts of the language that this program cannot treat: the model is not wrong.
 const LIMITS: &[&str] = &["not-supported", "external-refused"];

@@ -393,6 +393,16 @@ fn parameters_may_be_left_to_the_user_of_a_class() {
     let (code, out, _) = gapi(&here, &["check", "Store.mo"]);
     assert!(code == 0 && out.contains("`c` must have a value where it is used"), "{out}");
     assert_eq!(gapi(&here, &["check", "Store.mo", "Store"]).0, 1);
+    // A size without value, and what follows from it; a condition that is false stays an error.
+    let text = "model Curve parameter Integer m; parameter Real w[m];
+        parameter Real h[size(w, 1)] = w; Real y = h[1]*time; end Curve;";
+    fs::write(here.path().join("Curve.mo"), text).unwrap();
+    let (code, out, err) = gapi(&here, &["check", "Curve.mo"]);
+    assert!(code == 0 && out.contains("0 with errors"), "{out}{err}");
+    let text = "model Off parameter Real c; Real v if false; Real y = c*v; end Off;";
+    fs::write(here.path().join("Off.mo"), text).unwrap();
+    let (code, _, err) = gapi(&here, &["check", "Off.mo"]);
+    assert!(code == 1 && err.contains("error[conditional-component]"), "{err}");
 }
 
 #[test]
