@@ -41,7 +41,7 @@ pub fn findings(
     }
     findings.extend(run.conclusion.findings.clone());
     findings.extend(super::error_model::decided(&run.problem.series));
-    findings.extend(estimated(solution));
+    findings.extend(estimated(run, solution));
     findings.extend(equal_columns(run, statistics));
     findings.extend(dominant(run, statistics));
     findings.extend(residual_findings(
@@ -190,7 +190,7 @@ fn several_objectives(solution: &Solution) -> Finding {
     .severity(Severity::Information)
 }
 
-fn estimated(solution: &Solution) -> Option<Finding> {
+fn estimated(run: &Run, solution: &Solution) -> Option<Finding> {
     if solution.likelihood.error_model != ErrorModel::Estimated {
         return None;
     }
@@ -202,8 +202,12 @@ fn estimated(solution: &Solution) -> Option<Finding> {
     };
     let mut sigmas: Vec<String> = solution.series.iter().filter_map(own).collect();
     sigmas.dedup();
+    let what = match run.problem.is_normal() {
+        true => "Standard deviations",
+        false => "Scales of the errors",
+    };
     let sentence = format!(
-        "Standard deviations estimated with the parameters: {}.",
+        "{what} estimated with the parameters: {}.",
         sigmas.iter().map(|text| text.trim()).collect::<Vec<_>>().join(", ")
     );
     Some(Finding::new(FindingKind::ErrorModel, sentence).severity(Severity::Information))

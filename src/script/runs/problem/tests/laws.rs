@@ -56,6 +56,8 @@ fn student_errors_are_those_of_scipy() {
     assert!((scale - 0.5).abs() < 1e-12, "the scale is the one that was given: {scale}");
     let found = fitted(" }", "sigma = \"estimate\", error = \"student\"", &MEASURED);
     is(&found, 2.200_720_203_585_628, None, 16.128_984_345_061_337);
+    let text = found.text();
+    assert!(text.contains("Scales of the errors estimated with the parameters"), "{text}");
     let normal = fitted(" }", "sigma = 0.5", &MEASURED);
     let many =
         fitted(" }", "sigma = 0.5, error = \"student\", degrees_of_freedom = 1e9", &MEASURED);
