@@ -9,8 +9,9 @@
 //!
 //! The estimated deviations have been put in (the likelihood is concentrated), so that only the
 //! parameters are searched. For least squares, with
-//! G = exp((Σ_given uᵢ² + Σ_g n_g ln s_g² + Σ_computed (uᵢ² + 2 ln σᵢ)) / N), which grows with -log L,
-//! and N the number of points with those of the deviations: residuals √G κ uᵢ (estimated: uᵢ / s_g),
+//! G = exp((Σ_given uᵢ² + Σ_g n_g ln s_g² + Σ_computed (uᵢ² + 2 ln σᵢ)) / N), which grows with -log L
+//! (beyond [`LINEAR`] on the tangent of this function, which does not overflow), and N the number of
+//! points with those of the deviations: residuals √G κ uᵢ (estimated: uᵢ / s_g),
 //! and √G κ (uᵢ² - 1)/√2 of the deviations, whose squares add up to N G; factors √G wᵢ/κ (over s_g or
 //! σᵢ), and -√G √2/(κ σᵢ) of the deviations, for which the gradient is exact; where deviations are
 //! computed, factors are κ² times that, so that a step from far away, where κ is small, is that of the
@@ -22,6 +23,32 @@
 
 use super::{Fitness, Law, checked};
 use crate::elementary;
+
+/// Exponents beyond this are those of models that miss the measurements by ten of their deviations
+/// and more, as without the noise of a process; the exponential function overflows beyond 709.
+const LINEAR: f64 = 100.0;
+
+/// G of an exponent, and by which part of itself it grows with the exponent.
+fn growth(exponent: f64) -> [f64; 2] {
+    match exponent > LINEAR {
+        true => {
+            let beyond = 1.0 + (exponent - LINEAR);
+            [elementary::exp(LINEAR) * beyond, 1.0 / beyond]
+        }
+        false => [elementary::exp(exponent), 1.0],
+    }
+}
+
+/// The sum of squares of so many points where twice -log L is larger by `rise`.
+pub(crate) fn raised(sum: f64, points: f64, rise: f64) -> f64 {
+    let own = sum / points;
+    let largest = elementary::exp(LINEAR);
+    let exponent = match own > largest {
+        true => LINEAR + own / largest - 1.0,
+        false => elementary::ln(own),
+    };
+    points * growth(exponent + rise / points)[0]
+}
 
 /// The standard deviation of a point, or what else the point is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -211,16 +238,16 @@ impl Fitness for Concentrated {
     fn scaled(
         &self,
         [simulated, measured, weights]: [&[f64]; 3],
-        shift: f64,
         residuals: &mut [f64],
         factors: &mut [f64],
     ) -> bool {
         let scales = self.scales([simulated, measured, weights], true);
         let n = measured.len() as f64;
-        let root = elementary::exp(0.5 * (self.exponent(&scales) / n - shift));
+        let [growth, part] = growth(self.exponent(&scales) / n);
+        let root = growth.sqrt();
         let kappa = (n / (scales.given_squares + scales.computed_squares)).sqrt();
         let is_computed = self.n_measured < n;
-        let per = if is_computed { 1.0 / kappa } else { kappa };
+        let per = if is_computed { 1.0 / kappa } else { kappa / part };
         for (k, &(law, deviation)) in self.points.iter().enumerate() {
             if let Deviation::Of(point) = deviation {
                 let sigma = simulated[k];
@@ -315,7 +342,7 @@ mod tests {
         for own in cases() {
             let (mut r, mut f) = ([0.0; 6], [0.0; 6]);
             let mut square = |p: f64| {
-                assert!(own.scaled([&simulated(p), &MEASURED, &WEIGHTS], 0.0, &mut r, &mut f));
+                assert!(own.scaled([&simulated(p), &MEASURED, &WEIGHTS], &mut r, &mut f));
                 (r.iter().map(|r| r * r).sum::<f64>(), r, f)
             };
             let value = |p: f64| own.fitness(&simulated(p), &MEASURED, &WEIGHTS);
@@ -361,7 +388,7 @@ mod tests {
         assert!((weights_there[3] - SQRT_2 / s[3]).abs() < 1e-12);
         let (mut r, mut f) = ([0.0; 5], [0.0; 5]);
         let mut square = |p: f64| {
-            assert!(own.scaled([&simulated(p), &measured, &weights], 0.0, &mut r, &mut f));
+            assert!(own.scaled([&simulated(p), &measured, &weights], &mut r, &mut f));
             (r.iter().map(|r| r * r).sum::<f64>(), r, f)
         };
         let ratio = (value(0.3) - value(0.2)) / 2.5;
@@ -381,6 +408,32 @@ mod tests {
         // What is no deviation has failed.
         let negative = [1.0, 2.0, 3.0, -0.1, 0.5];
         assert_eq!(own.fitness(&negative, &measured, &weights), crate::ga::FAILED_FITNESS);
+    }
+
+    /// Far away, where an exponential function overflows, the sum still falls with -log L, by the
+    /// gradient of the factors.
+    #[test]
+    fn sums_of_measurements_that_are_missed_by_thousands_of_deviations_are_finite() {
+        let own = Concentrated::new(vec![(Law::Normal, Deviation::Given); 6], Vec::new());
+        let weights = [1e4; 6];
+        let (mut r, mut f) = ([0.0; 6], [0.0; 6]);
+        let mut square = |p: f64| {
+            assert!(own.scaled([&simulated(p), &MEASURED, &weights], &mut r, &mut f));
+            (r.iter().map(|r| r * r).sum::<f64>(), r, f)
+        };
+        let value = |p: f64| own.fitness(&simulated(p), &MEASURED, &weights);
+        let (sum, r, f) = square(0.2);
+        assert!(sum.is_finite(), "{sum}");
+        let rise = 2.0 * (value(0.3) - value(0.2));
+        let other = square(0.3).0;
+        assert!((raised(sum, 6.0, rise) - other).abs() < 1e-9 * other, "{other}");
+        let h = 1e-6;
+        let expected = (square(0.2 + h).0 - square(0.2 - h).0) / (2.0 * h);
+        let derivative = [1.0, 0.0, -1.0, 0.4, -2.0, 1.0];
+        let found: f64 = (0..6).map(|k| 2.0 * f[k] * r[k] * derivative[k]).sum();
+        assert!((found - expected).abs() < 1e-6 * expected.abs(), "{found} {expected}");
+        // Where it does not overflow, the sum is the exponential function.
+        assert!((raised(6.0, 6.0, 3.0) - 6.0 * 0.5_f64.exp()).abs() < 1e-12);
     }
 
     #[test]

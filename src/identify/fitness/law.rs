@@ -278,7 +278,7 @@ mod tests {
             let weights = if law == Law::Poisson { [1.0; 6] } else { WEIGHTS };
             let (mut r, mut f) = ([0.0; 6], [0.0; 6]);
             let mut square = |p: f64| {
-                assert!(own.scaled([&simulated(p), &MEASURED, &weights], 0.0, &mut r, &mut f));
+                assert!(own.scaled([&simulated(p), &MEASURED, &weights], &mut r, &mut f));
                 (r.iter().map(|r| r * r).sum::<f64>(), r, f)
             };
             let value = |p: f64| own.fitness(&simulated(p), &MEASURED, &weights);

@@ -9,7 +9,7 @@ mod robust;
 mod root_mean_square;
 mod sum_of_squares;
 
-pub(crate) use concentrated::{Concentrated, Deviation};
+pub(crate) use concentrated::{Concentrated, Deviation, raised};
 pub use law::Law;
 pub use sum_of_squares::sum_of_squares;
 
@@ -29,12 +29,10 @@ pub trait Fitness: Send + Sync {
     /// Where the minimum is that of a sum of squares whose factors depend on the simulation:
     /// writes residuals r with Σ r² growing with the fitness, and factors f such that
     /// 2 Σ f r ∂ŷ/∂p is the gradient of Σ r². `false`: the constant factors of
-    /// [`least_squares`](Fitness::least_squares) hold. Where the sum is an exponential function,
-    /// `shift` is taken from its exponent, so that the sum is finite.
+    /// [`least_squares`](Fitness::least_squares) hold.
     fn scaled(
         &self,
         [_simulated, _measured, _weights]: [&[f64]; 3],
-        _shift: f64,
         _residuals: &mut [f64],
         _factors: &mut [f64],
     ) -> bool {

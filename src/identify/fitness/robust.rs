@@ -166,7 +166,6 @@ impl Fitness for Robust {
     fn scaled(
         &self,
         [simulated, measured, weights]: [&[f64]; 3],
-        _shift: f64,
         residuals: &mut [f64],
         factors: &mut [f64],
     ) -> bool {
@@ -266,7 +265,7 @@ mod tests {
             let own = make(entry, scale);
             let (mut r, mut f) = ([0.0; 8], [0.0; 8]);
             let mut square = |p: f64| {
-                assert!(own.scaled([&simulated(p), &MEASURED, &WEIGHTS], 0.0, &mut r, &mut f));
+                assert!(own.scaled([&simulated(p), &MEASURED, &WEIGHTS], &mut r, &mut f));
                 (r.iter().map(|r| r * r).sum::<f64>(), r, f)
             };
             let (sum, r0, f0) = square(0.2);

@@ -229,7 +229,7 @@ impl Evaluation {
             ranges.map(|(free, value)| free.derivative(*value)).collect();
         let points = self.measured.len();
         let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
-        self.scaled(problem, (&found.simulated, 0.0), &mut residuals, &mut scales);
+        self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
         let rows = found.derivatives.chunks_exact(values.len()).zip(&scales);
         rows.flat_map(|(row, scale)| {
             row.iter().zip(&range_derivatives).map(move |(d, s)| d * s * scale)
@@ -425,7 +425,7 @@ impl Evaluation {
         let (mut all, mut factors) = (vec![0.0; rows.len()], vec![0.0; self.measured.len()]);
         let n = self.measured.len();
         for (row, own) in rows.chunks_exact(n).zip(all.chunks_exact_mut(n)) {
-            self.scaled(problem, (row, 0.0), own, &mut factors);
+            self.scaled(problem, row, own, &mut factors);
         }
         all
     }
@@ -435,13 +435,13 @@ impl Evaluation {
     pub(super) fn scaled(
         &self,
         problem: &Problem,
-        (simulated, shift): (&[f64], f64),
+        simulated: &[f64],
         residuals: &mut [f64],
         factors: &mut [f64],
     ) {
         let fitness = &problem.objectives[0].1;
         let compared = [simulated, &self.measured[..], &self.weights[..]];
-        if fitness.scaled(compared, shift, residuals, factors) {
+        if fitness.scaled(compared, residuals, factors) {
             return;
         }
         let scales = self.scales.as_deref().unwrap_or(&self.weights);

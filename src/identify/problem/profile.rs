@@ -12,6 +12,7 @@ use super::refit::Refit;
 use super::statistics::distributions::{chi_square_quantile, student_quantile};
 use super::{ErrorModel, Evaluation, Free, Problem};
 use crate::diag::Fault;
+use crate::fitness::raised;
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary};
 use serde::{Deserialize, Serialize};
@@ -216,8 +217,7 @@ pub fn limit(
         ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
         // S is N G with N ln G = -2 log L.
         ErrorModel::Computed => {
-            let rise = chi_square_quantile(0.95, 1.0) / problem.n_points() as f64;
-            smallest * elementary::exp(rise)
+            raised(smallest, problem.n_points() as f64, chi_square_quantile(0.95, 1.0))
         }
         ErrorModel::OneVariance | ErrorModel::Estimated => {
             smallest * (1.0 + elementary::powi(quantile, 2) / freedom)

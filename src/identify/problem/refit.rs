@@ -11,18 +11,15 @@ use crate::registry::{self, Options};
 const BUDGET: u64 = 400;
 /// So many of them a descent to its end may take; chosen, not measured.
 const BUDGETS: usize = 8;
-/// A budget that lowers the sum by less than this part is that of a descent at its end.
-const ENDED: f64 = 1e-4;
-/// Exponents that are larger are shifted; the exponential function of 709 is the last one that is finite.
-const LARGE: f64 = 300.0;
+/// A budget that lowers the sum by less than this part of that of a point is that of a descent at its
+/// end: -log L has fallen by less than half of it.
+const ENDED: f64 = 0.01;
 
 /// Fits again and again about the same problem.
 pub(crate) struct Refit<'a> {
     problem: &'a Problem,
     evaluation: &'a Evaluation,
     n_points: usize,
-    /// What is taken from the exponent of the sum, which is finite then also far from the minimum.
-    shift: f64,
     /// Simulations so far.
     pub simulations: u64,
 }
@@ -37,13 +34,7 @@ impl<'a> Refit<'a> {
     /// `None` where the first objective is no sum of squares.
     pub fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
         evaluation.scales()?;
-        Some(Refit {
-            problem,
-            evaluation,
-            n_points: problem.n_points(),
-            shift: 0.0,
-            simulations: 0,
-        })
+        Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
     }
 
     /// Whether simulations were cancelled: what came of them says nothing.
@@ -113,10 +104,10 @@ impl<'a> Refit<'a> {
     fn followed(&mut self, start: &[f64]) -> Result<Option<Fitted>, Fault> {
         let mut before: Option<Fitted> = None;
         for _ in 0..BUDGETS {
-            let from = before.as_ref().map_or(start, |(values, _)| values).to_vec();
-            let Some(sum) = self.shifted(&from, before.map(|own| own.1)) else { return Ok(None) };
-            let Some(found) = self.from(&from, None)? else { return Ok(None) };
-            if sum.is_some_and(|sum| sum - found.1 <= ENDED * sum) {
+            let from = before.as_ref().map_or(start, |(values, _)| values);
+            let Some(found) = self.from(from, None)? else { return Ok(None) };
+            let limit = ENDED / self.n_points as f64;
+            if before.as_ref().is_some_and(|own| own.1 - found.1 <= limit * own.1) {
                 let Ok(row) = self.evaluation.simulate(&found.0) else { return Ok(None) };
                 let objective = self.evaluation.objective(self.problem, &row);
                 return Ok(Some((found.0, objective)));
@@ -124,25 +115,6 @@ impl<'a> Refit<'a> {
             before = Some(found);
         }
         Ok(None)
-    }
-
-    /// Shifts the exponent of a likelihood where its sum at `place` is too large or vanishes; the sum
-    /// there, where it is known. `None` where that place cannot be simulated.
-    fn shifted(&mut self, place: &[f64], known: Option<f64>) -> Option<Option<f64>> {
-        if known.is_some_and(f64::is_normal) {
-            return Some(known);
-        }
-        self.shift = 0.0;
-        let row = self.evaluation.simulate(place).ok()?;
-        let objective = self.evaluation.objective(self.problem, &row);
-        let shift = 2.0 * objective / self.n_points as f64;
-        if shift.abs() > LARGE {
-            self.shift = shift;
-        }
-        Some(match known {
-            Some(_) => Some(square(&self.searched_residuals(place)?)),
-            None => None,
-        })
     }
 
     /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
@@ -195,8 +167,7 @@ impl<'a> Refit<'a> {
             };
             self.simulations += found.simulations;
             let (mut residuals, mut factors) = (vec![0.0; self.n_points], vec![0.0; self.n_points]);
-            let simulated = (&found.simulated[..], self.shift);
-            self.evaluation.scaled(self.problem, simulated, &mut residuals, &mut factors);
+            self.evaluation.scaled(self.problem, &found.simulated, &mut residuals, &mut factors);
             for (row, scale) in found.derivatives.chunks_exact(n).zip(&factors) {
                 let derivative = |k: usize| self.problem.parameters[k].derivative(place[k]);
                 jacobians.extend(varied.iter().map(|&k| row[k] * scale * derivative(k)));
@@ -207,10 +178,10 @@ impl<'a> Refit<'a> {
 
     fn residuals(&mut self, values: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
         self.simulations += values.len() as u64;
-        let (n, shift) = (self.n_points, self.shift);
+        let n = self.n_points;
         let weighted = |row: Vec<f64>| {
             let (mut residuals, mut factors) = (vec![0.0; n], vec![0.0; n]);
-            self.evaluation.scaled(self.problem, (&row, shift), &mut residuals, &mut factors);
+            self.evaluation.scaled(self.problem, &row, &mut residuals, &mut factors);
             residuals
         };
         let rows = self.evaluation.simulate_all(values).into_iter();

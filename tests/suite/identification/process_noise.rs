@@ -406,6 +406,63 @@ end T;
     }
 }
 
+/// A state that follows its input with noise, measured with a thousandth of what the noise moves it: without
+/// the noise the model misses the measurements by hundreds of their deviations, and the exponential function
+/// of twice -log L overflows. The least -log L of the exact solution x += (1 - exp(-10 k)) (u - x) is found by
+/// intervals of k.
+#[test]
+fn a_fit_without_the_noise_comes_to_its_end_however_far_away() {
+    let model = "model One
+  parameter Real k = 0.05;
+  input Real u;
+  Real x(start = 1, fixed = true);
+  output Real y = x;
+equation
+  der(x) = k*(u - x);
+end One;
+";
+    let mut data = "time [s],y,u\n".to_owned();
+    let (mut x, mut state, mut rows) = (1.0, 11_u64, Vec::new());
+    for row in 0..60 {
+        let u = 1.0 - f64::from((row / 10) % 2);
+        let y = x + 0.02 * normal(&mut state);
+        writeln!(data, "{},{y},{u}", 10 * row).unwrap();
+        rows.push([y, u]);
+        x += (1.0 - f64::exp(-0.1)) * (u - x) + 0.3 * normal(&mut state);
+    }
+    let negative_log = |k: f64| {
+        let mut x = 1.0;
+        let mut sum = 60.0 * (0.001_f64.ln() + 0.5 * std::f64::consts::TAU.ln());
+        for [y, u] in &rows {
+            sum += 0.5 * ((y - x) / 0.001).powi(2);
+            x += (1.0 - (-10.0 * k).exp()) * (u - x);
+        }
+        sum
+    };
+    let least = (0..=100_000).map(|at| negative_log(10_f64.powf(-3.0 + 3e-5 * f64::from(at))));
+    let least = least.fold(f64::INFINITY, f64::min);
+    let of = |noise: &str| {
+        let problem = format!(
+            "model = \"One\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+             k = {{ min = 1e-3, max = 1 }}\n[noise]\nx = {noise}\n[[experiment]]\ndata = \"d.csv\"\n\
+             outputs.y = {{ column = \"y\", sigma = 0.001 }}\n\
+             inputs.u = {{ column = \"u\", interpolation = \"hold\" }}\n\
+             [method]\nname = \"levenberg_marquardt\"\n"
+        );
+        let (result, text) = solved(&[("M.mo", model), ("d.csv", &data), ("p.toml", &problem)]);
+        (result["negative_log_likelihood"].as_f64().unwrap(), text)
+    };
+    let (log, text) = of("\"estimate\"");
+    let words = "without `noise of x`, -log L is larger by ";
+    let at = text.find(words).expect(&text) + words.len();
+    let rise: f64 = text[at..].split_whitespace().next().unwrap().parse().unwrap();
+    assert_near(rise, least - log, 6e-3);
+    // The same fit as one of its own.
+    let (log, text) = of("0");
+    assert_near(log, least, 1e-6);
+    assert!(text.contains("Minimum found"), "{text}");
+}
+
 /// The record of scripts has a fitness and a weight by default, which say nothing.
 #[test]
 fn scripts_have_process_noise() {
