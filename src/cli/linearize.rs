@@ -56,6 +56,9 @@ pub(super) struct LinearizeArgs {
     /// Where it is linearized, in seconds; the start if it is not given
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
     pub stop_time: Option<f64>,
+    /// Relative tolerance of the simulation
+    #[arg(long, value_name = "TOL", value_parser = number)]
+    pub tolerance: Option<f64>,
     /// Set a parameter (repeatable): a number, true, false, a literal of an enumeration, or a String
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::simulate::name_and_value)]
     pub set: Vec<(String, String)>,
@@ -120,7 +123,8 @@ fn run(
     }
     let start = arguments.start_time;
     let stop = arguments.stop_time.or(start).or(Some(0.0));
-    let options = SimulationOptions { start, stop, ..SimulationOptions::default() };
+    let tolerance = arguments.tolerance;
+    let options = SimulationOptions { start, stop, tolerance, ..SimulationOptions::default() };
     let linear = linearized(session, &options, &arguments.output)?;
     let chosen = chosen(&linear, &arguments.input).map_err(one)?;
     let poles = linear.poles().ok_or_else(|| {
@@ -223,7 +227,7 @@ fn roots(text: &mut String, title: &str, roots: &[Number]) {
         };
         let [frequency, damping] = match root.im {
             0.0 => [String::new(), String::new()],
-            _ => [significant(size / TAU, 5), significant(-root.re / size, 4)],
+            _ => [significant(size / TAU, 5), significant(0.0 - root.re / size, 4)],
         };
         let constant = match root.im == 0.0 && root.re != 0.0 {
             true => significant(-1.0 / root.re, 5),

@@ -10,6 +10,7 @@
 
 use super::model::{Instance, Model, Parameter, PortableModel, Spectrum};
 use super::program::CompiledModel;
+use crate::codegen::ORDERS;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::frequency::{LinearSystem, Number, Response};
@@ -25,8 +26,6 @@ use std::f64::consts::TAU;
 pub const FREQUENCY: &str = "frequency";
 /// What a spectrum consists of.
 pub const PARTS: [&str; 3] = ["real", "imaginary", "magnitude"];
-/// Derivatives of the input that a Jacobian has columns for, itself included.
-const ORDERS: usize = 3;
 
 /// A model and one of its spectra.
 pub struct SpectrumModel {

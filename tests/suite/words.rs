@@ -16,8 +16,8 @@ type Word = (&'static str, &'static str, usize);
 /// and comments. The counts only fall.
 const GONE: &[Word] = &[
     ("told", "reported, given, shown", 4),
-    ("slope of", "derivative of", 1),
-    ("slopes", "derivatives, Jacobian entries", 22),
+    ("slope of", "derivative of", 0),
+    ("slopes", "derivatives, Jacobian entries", 2),
     ("carried out", "executed, evaluated", 0),
     ("cannot stand", "is not allowed, cannot be mixed", 0),
     ("stand in", "are in, are allowed in", 1),
@@ -72,7 +72,7 @@ const GONE: &[Word] = &[
 
 /// Words of which the guide may have the usual sense: a slope of a line, what readers want.
 const GONE_FROM_SOURCES: &[Word] = &[
-    ("slope", "derivative, Jacobian entry, rate; the slope of a line", 79),
+    ("slope", "derivative, Jacobian entry, rate; the slope of a line", 60),
     ("turns", "iterations, passes, rotates", 10),
     ("restless", "inconsistent", 0),
     ("somebody", "another user, another program, the caller", 0),

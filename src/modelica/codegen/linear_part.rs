@@ -7,7 +7,7 @@
 //!   ∂(f, g, h)/∂(x, z, u, u̇, …) at the operating point
 //! ```
 //!
-//! The input u is a chain of states of which each is the derivative of the one before, so that
+//! Each input u is a chain of states of which each is the derivative of the one before, so that
 //! equations that contain derivatives of u find them; the last derivative is a parameter.
 
 use super::errors::NOT_LINEARIZED;
@@ -23,15 +23,18 @@ use crate::symbolic::{Expr, Pool, VarId};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Derivatives of an input that the Jacobian has columns for, itself included.
+pub const ORDERS: usize = 3;
+
 /// Where the entries of the Jacobian are found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LinearPart {
-    /// Number of states without those of the input.
+    /// Number of states without those of the inputs.
     pub n_states: usize,
     /// Number of algebraic unknowns; their equations have no derivative.
     pub n_algebraic: usize,
-    /// What is not always zero. Rows: states, algebraic unknowns, the output. Columns: states, algebraic
-    /// unknowns, the input and its derivatives.
+    /// What is not always zero. Rows: states, algebraic unknowns, the outputs. Columns: states, algebraic
+    /// unknowns, each input with its derivatives.
     pub entries: Vec<LinearEntry>,
 }
 
@@ -47,11 +50,11 @@ pub struct LinearEntry {
 }
 
 /// The chain of an input: itself or what is added to it, its derivatives, and at the end a parameter.
-pub struct InputChain<'a> {
+pub struct InputChain {
     /// The states, each the derivative of the one before.
-    pub states: &'a [String],
+    pub states: [String; ORDERS],
     /// The parameter that is the derivative of the last one.
-    pub end: &'a str,
+    pub end: String,
 }
 
 impl LinearPart {
@@ -60,7 +63,7 @@ impl LinearPart {
     /// # Errors
     ///
     /// States that are chosen at run time, delays and transports.
-    pub fn refuse(sorted: &CausalizedDae) -> Result<(), Fault> {
+    fn refuse(sorted: &CausalizedDae) -> Result<(), Fault> {
         if !sorted.selections.is_empty() {
             return Err(fault!(
                 NOT_LINEARIZED,
@@ -80,22 +83,34 @@ impl LinearPart {
         Ok(())
     }
 
-    /// Adds variables for the entries to a system. The output is the name of a variable.
+    /// Adds variables for the entries to a system. The outputs are names of variables.
     ///
     /// # Errors
     ///
     /// Names that the system does not have, an input that its states determine, an output that depends on
-    /// higher derivatives of the input than the chain has.
+    /// higher derivatives of an input than the chain has.
     pub fn add_to(
         sorted: &mut CausalizedDae,
-        chain: &InputChain<'_>,
-        output: &str,
+        chains: &[InputChain],
+        outputs: &[String],
     ) -> Result<LinearPart, Fault> {
         LinearPart::refuse(sorted)?;
         let mut pool = std::mem::take(&mut sorted.dae.pool);
-        let made = Made::of(&mut pool, sorted, chain, output);
+        let made = Made::of(&mut pool, sorted, chains, outputs);
         sorted.dae.pool = pool;
         made
+    }
+
+    /// The names of the states without those of the chains, in the order of their columns.
+    ///
+    /// # Errors
+    ///
+    /// An input that the states determine.
+    pub fn states(sorted: &CausalizedDae, chains: &[InputChain]) -> Result<Vec<String>, Fault> {
+        let inputs = chain_states(sorted, chains)?;
+        let is_own = |state: &&VarId| inputs.iter().all(|(input, _)| input != *state);
+        let own = sorted.states.iter().filter(is_own);
+        Ok(own.map(|state| sorted.dae.variable(*state).name.to_string()).collect())
     }
 }
 
@@ -114,9 +129,9 @@ struct Made {
 #[derive(Clone, Copy)]
 enum Column {
     Unknown(usize),
-    /// The input or one of its derivatives.
+    /// An input or one of its derivatives, by its place among all of them.
     Input {
-        order: usize,
+        place: usize,
         sign: f64,
     },
 }
@@ -125,61 +140,59 @@ impl Made {
     fn of(
         pool: &mut Pool,
         sorted: &mut CausalizedDae,
-        chain: &InputChain<'_>,
-        output: &str,
+        chains: &[InputChain],
+        outputs: &[String],
     ) -> Result<LinearPart, Fault> {
-        let y = variable(sorted, output)?;
-        let end = variable(sorted, chain.end)?;
-        let mut outputs = right_sides(sorted, pool);
+        let mut equations = right_sides(sorted, pool);
         let mut iteration = Vec::new();
         for block in &sorted.blocks {
-            outputs.extend(block.residuals());
+            equations.extend(block.residuals());
             if let Block::Loop(torn) = block {
                 iteration.extend(&torn.iteration);
             }
         }
-        outputs.push(resolved(pool, sorted, y));
+        for output in outputs {
+            let y = variable(sorted, output)?;
+            equations.push(resolved(pool, sorted, y));
+        }
         let sequence: Vec<Assignment> =
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
-        let needed = slice(pool, &sequence, &outputs);
+        let needed = slice(pool, &sequence, &equations);
         let mut unknowns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
-        let columns = columns(sorted, chain, &unknowns)?;
-        let n_states = sorted.states.len() - chain.states.len();
-        unknowns.push(end);
+        let columns = columns(sorted, chains, &unknowns)?;
+        let n_states = sorted.states.len() - ORDERS * chains.len();
+        for chain in chains {
+            unknowns.push(variable(sorted, &chain.end)?);
+        }
         let first = sorted.dae.variables.len() as u32;
         let mut next = first;
-        let derivatives = differentiate_sequence(pool, &needed, &outputs, &unknowns, &mut next);
+        let derivatives = differentiate_sequence(pool, &needed, &equations, &unknowns, &mut next);
         let made = Made { columns, n_states, n_algebraic: iteration.len(), derivatives, first };
-        made.refuse_derivatives(sorted, chain)?;
+        made.refuse_derivatives(sorted)?;
         Ok(made.added(pool, sorted))
     }
 
-    /// The row of an equation; `None` for those of the input.
+    /// The row of an equation; `None` for those of the inputs.
     fn row(&self, equation: usize) -> Option<usize> {
         match self.columns.get(equation) {
             Some(Column::Unknown(row)) => Some(*row),
             Some(Column::Input { .. }) => None,
-            None => Some(self.n_states + self.n_algebraic),
+            None => Some(self.n_states + self.n_algebraic + equation - self.columns.len()),
         }
     }
 
-    /// Refuses equations that contain the end of the chain, other than that of the chain itself.
-    fn refuse_derivatives(
-        &self,
-        sorted: &CausalizedDae,
-        chain: &InputChain<'_>,
-    ) -> Result<(), Fault> {
-        let rows = self.derivatives.rows.iter().enumerate();
+    /// Refuses equations that contain the end of a chain, other than that of the chain itself.
+    fn refuse_derivatives(&self, sorted: &CausalizedDae) -> Result<(), Fault> {
+        let mut rows = self.derivatives.rows.iter().enumerate();
         let end = self.columns.len();
-        let wrong = rows
-            .into_iter()
-            .any(|(equation, row)| self.row(equation).is_some() && row.contains_key(&end));
+        let wrong = rows.any(|(equation, row)| {
+            self.row(equation).is_some() && row.keys().any(|unknown| *unknown >= end)
+        });
         match wrong {
             true => Err(fault!(
                 NOT_LINEARIZED,
-                "`{}` cannot be linearized: an equation depends on the derivative of its input of order {}",
-                sorted.dae.name,
-                chain.states.len();
+                "`{}` cannot be linearized: an equation depends on the derivative of its input of order {ORDERS}",
+                sorted.dae.name;
                 help: "filter the input with a first-order block"
             )),
             false => Ok(()),
@@ -201,8 +214,8 @@ impl Made {
             for (unknown, value) in row_of {
                 let (column, sign) = match self.columns.get(*unknown) {
                     Some(Column::Unknown(column)) => (*column, 1.0),
-                    Some(Column::Input { order, sign }) => {
-                        (self.n_states + self.n_algebraic + order, *sign)
+                    Some(Column::Input { place, sign }) => {
+                        (self.n_states + self.n_algebraic + place, *sign)
                     }
                     None => continue,
                 };
@@ -228,14 +241,10 @@ fn scaled(pool: &mut Pool, value: Expr, sign: f64) -> Expr {
     if sign < 0.0 { pool.neg(value) } else { value }
 }
 
-/// What the unknowns are: those of the chain are found among the states.
-fn columns(
-    sorted: &CausalizedDae,
-    chain: &InputChain<'_>,
-    unknowns: &[VarId],
-) -> Result<Vec<Column>, Fault> {
+/// The states of the chains among those of a system, each with its sign.
+fn chain_states(sorted: &CausalizedDae, chains: &[InputChain]) -> Result<Vec<(VarId, f64)>, Fault> {
     let mut inputs = Vec::new();
-    for name in chain.states {
+    for name in chains.iter().flat_map(|chain| &chain.states) {
         let own = variable(sorted, name)?;
         let (of, negated) = match sorted.aliases[own.0 as usize] {
             Some(alias) => (alias.of, alias.negated),
@@ -251,9 +260,19 @@ fn columns(
         }
         inputs.push((of, if negated { -1.0 } else { 1.0 }));
     }
+    Ok(inputs)
+}
+
+/// What the unknowns are.
+fn columns(
+    sorted: &CausalizedDae,
+    chains: &[InputChain],
+    unknowns: &[VarId],
+) -> Result<Vec<Column>, Fault> {
+    let inputs = chain_states(sorted, chains)?;
     let mut next = 0;
     let column = |unknown: &VarId| match inputs.iter().position(|(of, _)| of == unknown) {
-        Some(order) => Column::Input { order, sign: inputs[order].1 },
+        Some(place) => Column::Input { place, sign: inputs[place].1 },
         None => {
             next += 1;
             Column::Unknown(next - 1)

@@ -62,7 +62,7 @@ mod validation;
 
 pub use exchange::{Attributes, Needs};
 pub use filter::{Uncertainty, gain, rate};
-pub use linear_part::{InputChain, LinearEntry, LinearPart};
+pub use linear_part::{InputChain, LinearEntry, LinearPart, ORDERS};
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
 pub use stored::bytes_of;

@@ -1,6 +1,13 @@
-//! Poles and zeros of linear systems ẋ = A x + b u, y = c x + d u.
+//! Poles and zeros of linear systems ẋ = A x + Σ b_k u^(k), y = c x + Σ d_k u^(k), with derivatives of the
+//! input. These are moved from the first equation into the second one, by x + b_k u^(k−1) in the place of x:
 //!
-//! The zeros are the poles of the system that an input keeps at y = 0. Where d = 0, y is differentiated
+//! ```text
+//!   (s − A)⁻¹ b_k s^k = b_k s^(k−1) + (s − A)⁻¹ A b_k s^(k−1)
+//! ```
+//!
+//! Where the highest derivative in y is not zero, y = 0 determines it, and the zeros are the poles of this
+//! system. Else
+//! the zeros are the poles of the system that an input keeps at y = 0. Where d = 0, y is differentiated
 //! until the input appears in it, after r times: what keeps y and its r − 1 derivatives at zero leaves n − r
 //! directions to the states, in which A − b c Aʳ/(c Aʳ⁻¹ b) acts. So there are exactly n − r zeros, and none
 //! at infinity that rounding would bring into sight.
@@ -42,8 +49,53 @@ pub fn poles(a: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
 }
 
 /// The zeros from an input to an output, slowest first; `None` where the output does not answer to the
-/// input at all.
+/// input at all. `b` and `d` are those of the input and of its derivatives, as many of each.
 pub fn zeros(
+    a: &DMatrix<f64>,
+    mut b: Vec<DVector<f64>>,
+    c: &RowDVector<f64>,
+    mut d: Vec<f64>,
+) -> Option<Vec<Complex<f64>>> {
+    while b.len() > 1 {
+        let moved = b.pop()?;
+        let (at, through) = (b.len() - 1, (c * &moved)[0]);
+        b[at] += a * &moved;
+        let sum = d[at] + through;
+        // A sum of parts that cancel is rounding.
+        let size = d[at].abs().max(c.norm() * moved.norm());
+        d[at] = if sum.abs() > VANISHES * size { sum } else { 0.0 };
+    }
+    let order = d.iter().rposition(|own| *own != 0.0).unwrap_or(0);
+    match order {
+        0 => proper_zeros(a, &b.pop()?, c, d[0]),
+        order => poles(&held_by_derivative(a, &b.pop()?, c, &d[..=order])),
+    }
+}
+
+/// The matrix of a system whose input keeps y at zero by its highest derivative: of x, u, …, u^(r−1).
+fn held_by_derivative(
+    a: &DMatrix<f64>,
+    b: &DVector<f64>,
+    c: &RowDVector<f64>,
+    d: &[f64],
+) -> DMatrix<f64> {
+    let (n, r) = (a.nrows(), d.len() - 1);
+    DMatrix::from_fn(n + r, n + r, |i, j| match (i < n, j < n) {
+        (true, true) => a[(i, j)],
+        (true, false) => {
+            if j == n {
+                b[i]
+            } else {
+                0.0
+            }
+        }
+        (false, _) if i + 1 < n + r => f64::from(u8::from(j == i + 1)),
+        (false, true) => -c[j] / d[r],
+        (false, false) => -d[j - n] / d[r],
+    })
+}
+
+fn proper_zeros(
     a: &DMatrix<f64>,
     b: &DVector<f64>,
     c: &RowDVector<f64>,
@@ -112,14 +164,34 @@ mod tests {
         let (b, c) = (&back * b, (c.transpose() * &t));
         let expected = [[-1.0, 0.0], [-2.0, 0.0], [-1.0, -3.0], [-1.0, 3.0]];
         assert_are(&poles(&a).unwrap(), &expected);
-        assert_are(&zeros(&a, &b, &c, 0.0).unwrap(), &[[-3.0, 0.0]]);
+        assert_are(&zeros(&a, vec![b.clone()], &c, vec![0.0]).unwrap(), &[[-3.0, 0.0]]);
         // With d = 2 the numerator is 2 (…) + s + 3.
-        let found = zeros(&a, &b, &c, 2.0).unwrap();
+        let found = zeros(&a, vec![b.clone()], &c, vec![2.0]).unwrap();
         for s in &found {
             let value = (s + 1.0) * (s + 2.0) * (s * s + s * 2.0 + 10.0) * 2.0 + s + 3.0;
             assert!(value.norm() < 1e-7, "{s}: {value}");
         }
         assert_eq!(found.len(), 4);
+    }
+
+    /// y = x + u̇ with ẋ = −x + 2 u + 3 u̇ + ü: (s² + 3 s + 2)/(s + 1) + s, whose numerator is
+    /// 2 s² + 4 s + 2; and the same without the last term, whose input in place of derivatives is
+    /// proper: (s + 2)(s + 1)/(s + 1).
+    #[test]
+    fn derivatives_of_the_input_add_zeros() {
+        let a = DMatrix::from_element(1, 1, -1.0);
+        let one = |value: f64| DVector::from_element(1, value);
+        let c = RowDVector::from_element(1, 1.0);
+        let b = vec![one(2.0), one(3.0), one(1.0)];
+        let found = zeros(&a, b.clone(), &c, vec![0.0, 1.0, 0.0]).unwrap();
+        assert_eq!(found.len(), 2);
+        for s in &found {
+            assert!((s + 1.0).norm() < 1e-7, "{found:?}");
+        }
+        assert_are(&zeros(&a, b, &c, vec![0.0; 3]).unwrap(), &[[-1.0, 0.0], [-2.0, 0.0]]);
+        // (2 + s)/(s + 1) − 1 = 1/(s + 1): what cancels is not a zero far away.
+        let found = zeros(&a, vec![one(2.0), one(1.0)], &c, vec![-1.0, 0.0]).unwrap();
+        assert_are(&found, &[]);
     }
 
     #[test]
@@ -132,15 +204,15 @@ mod tests {
             _ => 0.0,
         });
         let unit = |at: usize| DVector::from_fn(n, |i, _| f64::from(u8::from(i == at)));
-        assert_eq!(zeros(&a, &unit(0), &unit(n - 1).transpose(), 0.0).unwrap(), []);
+        assert_eq!(zeros(&a, vec![unit(0)], &unit(n - 1).transpose(), vec![0.0]).unwrap(), []);
         // The zeros of the driving point are the poles of the ladder without its first rung.
-        let found = zeros(&a, &unit(0), &unit(0).transpose(), 0.0).unwrap();
+        let found = zeros(&a, vec![unit(0)], &unit(0).transpose(), vec![0.0]).unwrap();
         let expected: Vec<[f64; 2]> = poles(&a.view((1, 1), (n - 1, n - 1)).into_owned())
             .unwrap()
             .iter()
             .map(|s| [s.re, s.im])
             .collect();
         assert_are(&found, &expected);
-        assert_eq!(zeros(&a, &unit(0), &(unit(0) * 0.0).transpose(), 0.0), None);
+        assert_eq!(zeros(&a, vec![unit(0)], &(unit(0) * 0.0).transpose(), vec![0.0]), None);
     }
 }

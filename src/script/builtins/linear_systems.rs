@@ -118,8 +118,7 @@ fn linearize(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let setup = args.optional::<Value>("simulationSetup")?;
     let linear = linear_model(session, &model, setup, &[])?;
     let [x, u, y] = linear.names.clone();
-    let matrices = [&linear.a, &linear.b, &linear.c, &linear.d].map(matrix);
-    let [a, b, c, d] = matrices;
+    let [a, b, c, d] = linear.matrices()?.map(matrix);
     let names = [("yNames", y.into()), ("xNames", x.into()), ("uNames", u.into())];
     let [y, x, u] = names;
     Ok(record("StateSpace", [("A", a), ("B", b), ("C", c), ("D", d), y, x, u]))

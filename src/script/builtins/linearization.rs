@@ -135,7 +135,7 @@ fn translated_and_linearized(
     let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &options, &[]));
     session.restore_values(before);
     let linear = linear?;
-    let text = as_model(&linear, class);
+    let text = as_model(&linear, class).at(at).map_err(|error| vec![error])?;
     let written = write_results(session, &linear.results, file)
         .and_then(|()| session.write_result_file(Path::new(FILE), text.as_bytes()));
     written.at(at).map_err(|error| vec![error])?;
@@ -143,7 +143,8 @@ fn translated_and_linearized(
 }
 
 /// The model as Modelica.
-fn as_model(linear: &Linear, class: &Name) -> String {
+fn as_model(linear: &Linear, class: &Name) -> Result<String, Fault> {
+    let [a, b, c, d] = linear.matrices()?;
     let [x, u, y] = &linear.names;
     let (n, m, p) = (x.len(), u.len(), y.len());
     let mut text = format!(
@@ -153,12 +154,8 @@ fn as_model(linear: &Linear, class: &Name) -> String {
         vector(&linear.x0),
         vector(&linear.u0)
     );
-    let matrices = [
-        ("A", ["n", "n"], &linear.a),
-        ("B", ["n", "m"], &linear.b),
-        ("C", ["p", "n"], &linear.c),
-        ("D", ["p", "m"], &linear.d),
-    ];
+    let matrices =
+        [("A", ["n", "n"], a), ("B", ["n", "m"], b), ("C", ["p", "n"], c), ("D", ["p", "m"], d)];
     for (name, [rows, columns], values) in matrices {
         let value = match values.is_empty() {
             true => format!("zeros({rows}, {columns})"),
@@ -173,7 +170,8 @@ fn as_model(linear: &Linear, class: &Name) -> String {
             let _ = writeln!(text, "  Real '{letter}_{name}' = {letter}[{}];", at + 1);
         }
     }
-    text + "equation\n  der(x) = A * x + B * u;\n  y = C * x + D * u;\nend linearized_model;\n"
+    text += "equation\n  der(x) = A * x + B * u;\n  y = C * x + D * u;\nend linearized_model;\n";
+    Ok(text)
 }
 
 fn vector(values: &[f64]) -> String {

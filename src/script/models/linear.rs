@@ -1,5 +1,7 @@
 //! Linear models of deviations from a point, their poles, zeros and responses.
 
+use crate::codegen::ORDERS;
+use crate::codegen::errors::NOT_LINEARIZED;
 use crate::diag::Fault;
 use crate::fault;
 pub use crate::frequency::Number;
@@ -13,7 +15,7 @@ use crate::results::ResultTable;
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
-/// A model ẋ = A x + B u, y = C x + D u of deviations.
+/// A model ẋ = A x + Σ B_k u^(k), y = C x + Σ D_k u^(k) of deviations, with derivatives of the inputs.
 pub struct Linear {
     /// Names of the states x, the inputs u and the outputs y.
     pub names: [Vec<String>; 3],
@@ -23,29 +25,53 @@ pub struct Linear {
     pub u0: Vec<f64>,
     /// ∂ẋ/∂x, states × states.
     pub a: DMatrix<f64>,
-    /// ∂ẋ/∂u, states × inputs.
-    pub b: DMatrix<f64>,
+    /// ∂ẋ/∂u^(k), states × inputs.
+    pub b: [DMatrix<f64>; ORDERS],
     /// ∂y/∂x, outputs × states.
     pub c: DMatrix<f64>,
-    /// ∂y/∂u, outputs × inputs.
-    pub d: DMatrix<f64>,
+    /// ∂y/∂u^(k), outputs × inputs.
+    pub d: [DMatrix<f64>; ORDERS],
     /// The simulation before.
     pub results: ResultTable,
 }
 
 impl Linear {
+    /// The matrices A, B, C and D.
+    ///
+    /// # Errors
+    /// Derivatives of inputs, of which these say nothing.
+    pub fn matrices(&self) -> Result<[&DMatrix<f64>; 4], Fault> {
+        let has_entry =
+            |matrix: &DMatrix<f64>, input| matrix.column(input).iter().any(|v| *v != 0.0);
+        let is_needed = |input: &usize| {
+            let of_derivatives = self.b[1..].iter().chain(&self.d[1..]);
+            of_derivatives.into_iter().any(|matrix| has_entry(matrix, *input))
+        };
+        match (0..self.names[1].len()).find(is_needed) {
+            None => Ok([&self.a, &self.b[0], &self.c, &self.d[0]]),
+            Some(input) => Err(fault!(
+                NOT_LINEARIZED,
+                "the model depends on the derivative of its input `{}`, which matrices A, B, C and D do \
+                 not have", self.names[1][input];
+                help: "filter the input with a first-order block; `bode` and `gapi linearize` show transfer \
+                       functions with such derivatives"
+            )),
+        }
+    }
+
     /// The matrices in Dymola's layout, as a MAT file: `ABCD` = [A, B; C, D], `nx` and the names of x,
     /// u and y.
     ///
     /// # Errors
-    /// Names and matrices that are too large for the format.
+    /// Derivatives of inputs; names and matrices that are too large for the format.
     pub fn to_mat(&self) -> Result<Vec<u8>, Fault> {
+        let [a, b, c, d] = self.matrices()?;
         let [x, u, y] = &self.names;
         let whole = |i: usize, j: usize| match (i.checked_sub(x.len()), j.checked_sub(x.len())) {
-            (None, None) => self.a[(i, j)],
-            (None, Some(j)) => self.b[(i, j)],
-            (Some(i), None) => self.c[(i, j)],
-            (Some(i), Some(j)) => self.d[(i, j)],
+            (None, None) => a[(i, j)],
+            (None, Some(j)) => b[(i, j)],
+            (Some(i), None) => c[(i, j)],
+            (Some(i), Some(j)) => d[(i, j)],
         };
         let (rows, columns) = (x.len() + y.len(), x.len() + u.len());
         let elements = (0..columns).flat_map(|j| (0..rows).map(move |i| whole(i, j))).collect();
@@ -68,17 +94,18 @@ impl Linear {
     /// The zeros from an input to an output, by their places, slowest first; `None` where the output does not
     /// answer.
     pub fn zeros(&self, (output, input): (usize, usize)) -> Option<Vec<Number>> {
-        let (b, c) = (self.b.column(input).into_owned(), self.c.row(output).into_owned());
-        frequency::zeros(&self.a, &b, &c, self.d[(output, input)])
+        let b = self.b.each_ref().map(|own| own.column(input).into_owned());
+        let d = self.d.each_ref().map(|own| own[(output, input)]);
+        frequency::zeros(&self.a, b.to_vec(), &self.c.row(output).into_owned(), d.to_vec())
     }
 
     /// y/u at rest; `None` at a pole there.
     pub fn gain(&self, (output, input): (usize, usize)) -> Option<f64> {
         if self.a.is_empty() {
-            return Some(self.d[(output, input)]);
+            return Some(self.d[0][(output, input)]);
         }
-        let x = self.a.clone().lu().solve(&-self.b.column(input))?;
-        let value = (self.c.row(output) * x)[0] + self.d[(output, input)];
+        let x = self.a.clone().lu().solve(&-self.b[0].column(input))?;
+        let value = (self.c.row(output) * x)[0] + self.d[0][(output, input)];
         Some(value).filter(|value| value.is_finite())
     }
 
@@ -139,13 +166,13 @@ impl Linear {
     /// The system from an input to an output.
     fn system(&self, (output, input): (usize, usize)) -> LinearSystem {
         let n = self.a.nrows();
-        let entry = |i: usize, j: usize| match (i == n, j == n) {
-            (false, false) => self.a[(i, j)],
-            (false, true) => self.b[(i, input)],
-            (true, false) => self.c[(output, j)],
-            (true, true) => self.d[(output, input)],
+        let entry = |i: usize, j: usize| match (i == n, j.checked_sub(n)) {
+            (false, None) => self.a[(i, j)],
+            (false, Some(order)) => self.b[order][(i, input)],
+            (true, None) => self.c[(output, j)],
+            (true, Some(order)) => self.d[order][(output, input)],
         };
-        LinearSystem { n_states: n, jacobian: DMatrix::from_fn(n + 1, n + 1, entry) }
+        LinearSystem { n_states: n, jacobian: DMatrix::from_fn(n + 1, n + ORDERS, entry) }
     }
 }
 

@@ -16,6 +16,7 @@ pub mod final_state;
 pub mod hardest;
 pub mod imported;
 pub(crate) mod in_use;
+mod input_chain;
 mod left_open;
 mod libraries;
 pub mod library_files;

@@ -672,11 +672,6 @@ impl Session {
         Ok(model)
     }
 
-    /// A system of the model with the values that scripts gave to it.
-    pub(crate) fn system_with_values(&mut self, model: &Translated) -> Result<System, Diagnostic> {
-        Ok(prepared(self, model)?.1.system)
-    }
-
     /// A system in which the parameters of the model translated last, or of what scripts changed it
     /// to, have their values.
     pub(super) fn parameters_of(&mut self, model: &Arc<Translated>) -> Result<System, Diagnostic> {

@@ -1,9 +1,7 @@
-//! Models compiled with their linear part from an input to an output, for spectra.
-//!
-//! To the value of the input is added a state that stays zero, and that is the first of a chain of states
-//! of which each is the derivative of the one before: equations that contain derivatives of the input find
-//! them there.
+//! Models compiled with their linear part from an input to an output, for spectra: to the value of the input
+//! is added a state that stays zero, the first of a chain ([`input_chain`]).
 
+use super::input_chain::{self, parsed};
 use super::simulation;
 use super::translated::Translated;
 use crate::Session;
@@ -11,19 +9,14 @@ use crate::causalize;
 use crate::codegen::{InputChain, LinearPart, Program};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::fault;
-use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
-use crate::lower::StateSelect;
+use crate::flatten::{BaseType, FlatModel, Variability, Variable};
 use crate::registry::BAD_OPTION;
-use crate::source::{SourceId, Span};
+use crate::source::Span;
 use crate::syntax;
-use crate::syntax::ast::{
-    CausalityPrefix, Comment, Equation, EquationKind, Expression, ExpressionKind,
-};
+use crate::syntax::ast::{CausalityPrefix, Expression, ExpressionKind};
 
-/// The states of the chain.
-const CHAIN: [&str; 3] = ["'deviation of the input'", "'its rate'", "'its second derivative'"];
-/// The derivative of the last one.
-const END: &str = "'its third derivative'";
+/// What is added to the input.
+const DEVIATION: &str = "'deviation of the input'";
 
 /// Compiles a model whose input oscillates around the value that it has, or begins with.
 ///
@@ -38,17 +31,16 @@ pub(crate) fn linearized(
 ) -> Result<(Translated, LinearPart), Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
     let mut flat = simulation::flattened(session, problem)?.model.clone();
-    deviate(&mut flat, input).at(place).map_err(one)?;
+    let chains = deviate(&mut flat, input).at(place).map_err(one)?;
     let mut sorted = causalize::causalize(&flat).map_err(one)?;
-    let chain = CHAIN.map(str::to_owned);
-    let chain = InputChain { states: &chain, end: END };
-    let linear = LinearPart::add_to(&mut sorted, &chain, output).at(place).map_err(one)?;
+    let outputs = [output.to_owned()];
+    let linear = LinearPart::add_to(&mut sorted, &chains, &outputs).at(place).map_err(one)?;
     let program = Program::compile(sorted).map_err(one)?;
     Ok((Translated::new(problem, flat, program), linear))
 }
 
 /// Adds the chain to the value of an input.
-fn deviate(flat: &mut FlatModel, name: &str) -> Result<(), Fault> {
+fn deviate(flat: &mut FlatModel, name: &str) -> Result<Vec<InputChain>, Fault> {
     let input = flat.variables.get(name).filter(|variable| {
         variable.causality == Some(CausalityPrefix::Input)
             && variable.dims.is_empty()
@@ -68,13 +60,10 @@ fn deviate(flat: &mut FlatModel, name: &str) -> Result<(), Fault> {
     let start = input.attributes.get("start").map(|start| start.value.clone());
     let held = input.binding.clone().or(start).unwrap_or_else(|| number(0.0));
     let held = syntax::print::expression(&held);
-    let value = parsed(&format!("({held}) + {}", CHAIN[0]))?;
+    let value = parsed(&format!("({held}) + {DEVIATION}"))?;
     flat.variables.insert(input.name.clone(), Variable { binding: Some(value), ..input.clone() });
-    let attribute = |kind| Attribute { value: Expression::new(kind, Span::NONE), is_final: false };
-    let always = ExpressionKind::Integer(StateSelect::Always as i64 + 1);
-    let plain = Variable {
-        causality: None,
-        is_input: false,
+    let deviation = Variable {
+        name: DEVIATION.into(),
         protected: true,
         description: None,
         binding: None,
@@ -82,30 +71,5 @@ fn deviate(flat: &mut FlatModel, name: &str) -> Result<(), Fault> {
         variability: Variability::Continuous,
         ..input
     };
-    for (at, name) in CHAIN.iter().enumerate() {
-        let mut state = Variable { name: (*name).into(), ..plain.clone() };
-        state.attributes.insert("start", attribute(ExpressionKind::Real(0.0)));
-        state.attributes.insert("fixed", attribute(ExpressionKind::Boolean(true)));
-        state.attributes.insert("stateSelect", attribute(always.clone()));
-        flat.variables.insert(state.name.clone(), state);
-        let derivative = CHAIN.get(at + 1).unwrap_or(&END);
-        let kind = EquationKind::Equal {
-            left: parsed(&format!("der({name})"))?,
-            right: parsed(derivative)?,
-        };
-        flat.equations.push(Equation { kind, comment: Comment::default(), span: Span::NONE });
-    }
-    let end = Variable {
-        name: END.into(),
-        binding: Some(number(0.0)),
-        variability: Variability::Parameter,
-        ..plain
-    };
-    flat.variables.insert(end.name.clone(), end);
-    Ok(())
-}
-
-fn parsed(text: &str) -> Result<Expression, Fault> {
-    syntax::parse_expression(SourceId::NONE, text)
-        .map_err(|error| fault!(BAD_OPTION, "{}", error.message))
+    input_chain::add(flat, deviation)
 }

@@ -64,6 +64,7 @@ fn any_variable_may_be_the_output() {
 fn what_cannot_be_shown_is_refused() {
     let here = folder(&[
         ("O.mo", OSCILLATOR),
+        ("I.mo", "model I input Real i; output Real v; equation v = 2*der(i) + 3*i; end I;\n"),
         ("S.mo", "model S Real x(start = 1, fixed = true); equation der(x) = -x; end S;\n"),
     ]);
     for (arguments, said) in [
@@ -72,12 +73,20 @@ fn what_cannot_be_shown_is_refused() {
         (&["linearize", "O.mo", "--response", "r.csv", "--from", "3", "--to", "1"], "no range"),
         (&["linearize", "S.mo", "--bode", "b.svg"], "the model has no input"),
         (&["linearize", "O.mo", "--bode", "b.txt"], "b.txt"),
+        (&["linearize", "I.mo", "--matrices", "i.mat"], "the derivative of its input `i`"),
     ] {
         let (code, out, errors) = gapi(&here, arguments);
         assert_eq!(code, 1, "{out}{errors}");
         assert!(errors.contains(said), "{said}\n{errors}");
+        // Names of variables that the program has added are not proposed.
+        assert!(!errors.contains("'derivative"), "{errors}");
         assert!(!here.path().join("r.csv").exists(), "nothing is written");
     }
+    // What the matrices do not have, poles, zeros and responses have.
+    let arguments = ["linearize", "I.mo", "--bode", "i.svg", "--from", "1", "--to", "10"];
+    let (code, out, errors) = gapi(&here, &arguments);
+    assert!(code == 0 && out.contains("  -1.5 "), "{out}{errors}");
+    assert!(out.contains("static gain of v/i: 3"), "{out}");
     // Poles are shown without inputs.
     let (code, out, _) = gapi(&here, &["linearize", "S.mo"]);
     assert!(code == 0 && out.contains("  -1 "), "{out}");
@@ -144,7 +153,7 @@ fn responses_are_those_of_the_formulas() {
 type Formula = fn(Number) -> Number;
 
 /// Filters, drives and loops: declarations, equations, and y/u.
-const SMALL: [(&str, &str, Formula); 8] = [
+const SMALL: [(&str, &str, Formula); 10] = [
     // Butterworth, third order.
     (
         "Real x[3](each start = 0, each fixed = true);",
@@ -184,6 +193,14 @@ const SMALL: [(&str, &str, Formula); 8] = [
             let open = (3.0 + 1.0 / s) / ((s + 1.0) * (s * 2.0 + 1.0));
             open / (open + 1.0)
         },
+    ),
+    // An inductance with a resistance: the derivative of the input is in the output.
+    ("", "y = 3*u + 2*der(u);", |s| s * 2.0 + 3.0),
+    // Derivatives of the input up to the second one, in the states as well.
+    (
+        "Real x(start = 0, fixed = true); Real v;",
+        "2*der(x) = u - x + 3*der(u); v = der(u); y = x + v + 0.1*der(v);",
+        |s| (s * 3.0 + 1.0) / (s * 2.0 + 1.0) + s + s * s * 0.1,
     ),
     // A nonlinear loop about its solution z = 1: 3 z² + 1 = 4.
     (
