@@ -78,7 +78,7 @@ pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
 pub use importance::{Analysis, Importance, ParameterImportance, analysis};
-pub use inference::{Band, BandPoint, Inference, Inferred};
+pub use inference::{Band, BandPoint, Inference, Inferred, SpectrumBand};
 pub(crate) use innovations::Periodogram;
 pub use innovations::{NOISE_OF, NoiseComparison};
 pub use journal::{
@@ -98,8 +98,8 @@ pub use run::Run;
 pub use script_result::{ScriptError, ScriptResult};
 pub use searches::best_of;
 pub use solution::{
-    CalibratedModel, ChiSquare, Course, Effort, Likelihood, Outcome, Pareto, Provenance, Solution,
-    SolvedParameter, SolvedSearch, SolvedSeries, Subject, Verdict,
+    CalibratedModel, ChiSquare, Course, Effort, Likelihood, Outcome, Pareto, PredictedAhead,
+    Provenance, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Subject, Verdict,
 };
 pub use space::Free;
 pub use states::SolvedState;

@@ -1,7 +1,7 @@
 //! Pictures of spectra: in the plane of complex numbers (Nyquist plots), and magnitude, phase and residuals
 //! over the frequency (Bode plots).
 
-use super::SolvedSeries;
+use super::{SolvedSeries, SpectrumBand};
 use crate::elementary;
 use crate::plot::{Axis, Figure, Mark, Panel, Series, of_points};
 use crate::spectrum::{FREQUENCY, PARTS};
@@ -21,8 +21,12 @@ type Point = [f64; 3];
 /// What of a point is drawn along each axis.
 type Coordinates = (fn(&Point) -> f64, fn(&Point) -> f64);
 
-/// Pictures for each experiment of which real and imaginary parts were measured.
-pub(crate) fn planes(all: &[SolvedSeries]) -> Vec<SpectrumFigures<'_>> {
+/// Pictures for each experiment of which real and imaginary parts were measured, with its band if it has one.
+pub(crate) fn planes<'s>(
+    all: &'s [SolvedSeries],
+    bands: &[SpectrumBand],
+) -> Vec<SpectrumFigures<'s>> {
+    let of = |name: &str| bands.iter().find(|band| band.experiment == name);
     let is_part =
         |series: &SolvedSeries, name: &str| series.x[0] == FREQUENCY && series.y[0] == name;
     let ordered = all.windows(2).filter_map(|pair| match pair {
@@ -34,7 +38,7 @@ pub(crate) fn planes(all: &[SolvedSeries]) -> Vec<SpectrumFigures<'_>> {
     let figures = of_one.map(|(real, imaginary)| SpectrumFigures {
         name: real.experiment.as_str(),
         plane: plane(real, imaginary),
-        bode: bode(real, imaginary),
+        bode: bode(real, imaginary, of(&real.experiment)),
     });
     figures.collect()
 }
@@ -101,7 +105,26 @@ fn phases(points: &[Point]) -> Vec<f64> {
     all
 }
 
-fn bode(real: &SolvedSeries, imaginary: &SolvedSeries) -> Figure {
+/// The areas of a band about magnitude and phase.
+fn areas(band: &SpectrumBand) -> [Vec<Series>; 2] {
+    let points: Vec<Point> = band.points.iter().map(|[x, re, im, ..]| [*x, *re, *im]).collect();
+    let values = points.iter().map(magnitude).zip(phases(&points));
+    let at: Vec<([f64; 5], (f64, f64))> = band.points.iter().copied().zip(values).collect();
+    let area = |name: &str, edge: fn(&([f64; 5], (f64, f64)), f64) -> f64| {
+        let upper = at.iter().map(|own| (own.0[0], edge(own, 1.0)));
+        let lower = at.iter().rev().map(|own| (own.0[0], edge(own, -1.0)));
+        let (x, y) = upper.chain(lower).unzip();
+        vec![Series { name: name.to_owned(), x, y, mark: Mark::Area, colour: 1 }]
+    };
+    [
+        area("95 % confidence band", |(own, (size, _)), side| {
+            size * elementary::exp(side * own[3])
+        }),
+        area("", |(own, (_, phase)), side| side.mul_add(own[4], *phase)),
+    ]
+}
+
+fn bode(real: &SolvedSeries, imaginary: &SolvedSeries, band: Option<&SpectrumBand>) -> Figure {
     let [measured, at_points, simulated] = curves([real, imaginary]);
     let dots = (of_points(real.points.len()), 0);
     let over = |points: &[Point], y: Vec<f64>, (mark, colour)| Series {
@@ -109,14 +132,15 @@ fn bode(real: &SolvedSeries, imaginary: &SolvedSeries) -> Figure {
         ..series("", points, (|own| own[0], |own| own[0]), (mark, colour))
     };
     let of_magnitude: Coordinates = (|own| own[0], magnitude);
-    let magnitudes = vec![
+    let [mut magnitudes, mut turned] = band.map_or_else(Default::default, areas);
+    magnitudes.extend([
         series("simulated", &simulated, of_magnitude, (Mark::Line, 1)),
         series("measured", &measured, of_magnitude, dots),
-    ];
-    let turned = vec![
+    ]);
+    turned.extend([
         over(&simulated, phases(&simulated), (Mark::Line, 1)),
         over(&measured, phases(&measured), dots),
-    ];
+    ]);
     // In per cent of the magnitude, by the parts.
     let left = |part: usize| {
         let pairs = measured.iter().zip(&at_points);

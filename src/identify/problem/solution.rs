@@ -304,6 +304,16 @@ fn one_variance() -> ErrorModel {
     ErrorModel::OneVariance
 }
 
+/// Predictions from the measurements up to so many samples before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct PredictedAhead {
+    /// How many.
+    pub samples: usize,
+    /// X, the prediction and the standard deviation of a measurement about it; points that have so many
+    /// samples before them.
+    pub points: Vec<[f64; 3]>,
+}
+
 /// A series with its simulation.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SolvedSeries {
@@ -350,6 +360,9 @@ pub struct SolvedSeries {
     /// X and a simulation from the start that sees no measurements, where the points are predictions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub simulation: Vec<[f64; 2]>,
+    /// Predictions over several samples, where they were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ahead: Option<PredictedAhead>,
     /// Whether the points are no simulated values, so that no curve goes through them.
     #[serde(skip)]
     pub(super) has_no_curve: bool,
@@ -377,6 +390,7 @@ impl SolvedSeries {
             points,
             script: Vec::new(),
             simulation: Vec::new(),
+            ahead: None,
             has_no_curve: false,
         };
         solved.measure();

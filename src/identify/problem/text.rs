@@ -298,7 +298,7 @@ impl Solution {
         };
         let mut figures: Vec<(String, Figure)> =
             self.series.iter().enumerate().filter_map(named).collect();
-        for (k, own) in planes(&self.series).into_iter().enumerate() {
+        for (k, own) in planes(&self.series, &self.inferred.spectra).into_iter().enumerate() {
             let number = if k == 0 { String::new() } else { format!("-{}", k + 1) };
             figures.push((format!("nyquist{number}.svg"), own.plane));
             figures.push((format!("bode{number}.svg"), own.bode));

@@ -41,8 +41,8 @@ pub(super) fn others(view: &View) -> Option<Section> {
     let all = all(view);
     let others = all.get(1..).unwrap_or_default();
     let solution = view.solution;
-    let mut planes = crate::problem::planes(&solution.series);
-    planes.extend(crate::problem::planes(&solution.validation));
+    let mut planes = crate::problem::planes(&solution.series, &solution.inferred.spectra);
+    planes.extend(crate::problem::planes(&solution.validation, &[]));
     let states = &solution.inferred.states;
     let measured = others.is_empty() && planes.is_empty();
     if measured && view.unmeasured.is_empty() && states.is_empty() {
@@ -130,6 +130,12 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint], descriptions: &Descripti
         let mut own: Vec<(f64, f64)> = points.iter().map(|[x, y]| (*x, *y)).collect();
         own.sort_by(|a, b| a.0.total_cmp(&b.0));
         fit.push(series(name, &own, Mark::Dashed, 2));
+    }
+    if let Some(ahead) = &solved.ahead {
+        let mut own: Vec<(f64, f64)> = ahead.points.iter().map(|[x, y, _]| (*x, *y)).collect();
+        own.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let name = format!("predicted over {} samples", ahead.samples);
+        fit.push(series(&name, &own, Mark::Thin, 3));
     }
     let residuals = column(|point| point[1] - point[2]);
     let residuals = vec![series("", &residuals, of_residuals(is_long), 0)];

@@ -416,3 +416,48 @@ fn the_next_frequency_counts_both_parts() {
     assert!(text.contains("points of the spectrum between frequency = 1"), "{text}");
     assert!(text.contains("would narrow the 95 % interval of C"), "{text}");
 }
+
+/// Z = R + s L with errors of its own for each part: R is known from the real part alone and L from the
+/// imaginary one, so that the half-widths of ln |Z| and of the phase are those of independent errors.
+#[test]
+fn magnitude_and_phase_have_the_bands_of_both_parts() {
+    let model = "model M input Real i; output Real v; parameter Real R = 0.1; parameter Real L = 0.1; \
+        equation v = R*i + L*der(i); end M;";
+    let (at, mut data) = (frequencies(0.01, 1.0, 12), "f,re,im\n".to_owned());
+    for (k, f) in at.iter().enumerate() {
+        let error = if k % 2 == 0 { 0.004 } else { -0.004 };
+        writeln!(data, "{f:.17e},{:.17e},{:.17e}", 0.1 + error, TAU * f * 0.05 - error).unwrap();
+    }
+    let problem =
+        problem("M", &[("R", 0.1), ("L", 0.1)], "spectrum = { input = \"i\", output = \"v\" }")
+            .replace("\"re\"", "{ column = \"re\", sigma = 0.004 }")
+            .replace("\"im\"", "{ column = \"im\", sigma = 0.004 }");
+    let files = [("M.mo", model), ("d.csv", &data), ("p.toml", &problem)];
+    let (result, _) = solved(&files);
+    let [[r, of_r], [l, of_l]] = ["R", "L"].map(|name| parameter(&result, name));
+    let points = result["inferred"]["spectra"][0]["points"].as_array().unwrap();
+    assert!(points.len() > 50, "{points:?}");
+    let numbers = |own: &Value| -> Vec<f64> {
+        own.as_array().unwrap().iter().map(|own| own.as_f64().unwrap()).collect()
+    };
+    // The quantile, by the first point.
+    let mut quantile = None;
+    for own in points.iter().map(numbers) {
+        let x = TAU * own[0];
+        let size = r * r + (x * l) * (x * l);
+        let magnitude = (r * of_r).hypot(x * x * l * of_l) / size;
+        let phase = (r * x * of_l).hypot(x * l * of_r) / size;
+        let quantile = *quantile.get_or_insert(own[3] / magnitude);
+        assert!((1.9..2.2).contains(&quantile), "{quantile}");
+        assert_near(own[3], quantile * magnitude, 1e-5);
+        assert_near(own[4], (quantile * phase).to_degrees(), 1e-5);
+    }
+    let here = crate::support::program::folder(&files);
+    let (code, out, error) =
+        crate::support::program::gapi(&here, &["identify", "p.toml", "--plain", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{error}");
+    for name in ["bode.svg", "report.html"] {
+        let text = std::fs::read_to_string(here.path().join("o").join(name)).unwrap();
+        assert!(text.contains("95 % confidence band"), "{name}");
+    }
+}

@@ -7,10 +7,12 @@
 //!
 //! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 5.1.
 
-use super::predictions::linear;
+use super::predictions::{Curve, Linear, linear};
 use super::{CurveRequest, Local, Predict, Reach};
 use crate::diag::Fault;
+use crate::frequency::Number;
 use crate::problem::Problem;
+use crate::spectrum::PARTS;
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
@@ -46,13 +48,23 @@ pub struct BandPoint {
     pub prediction: Option<f64>,
 }
 
-/// The bands of all experiments.
+/// The confidence band of a spectrum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpectrumBand {
+    /// The experiment.
+    pub experiment: String,
+    /// Frequency, real and imaginary part, and the 95 % half-widths of the logarithm of the magnitude and of
+    /// the phase in degrees.
+    pub points: Vec<[f64; 5]>,
+}
+
+/// The bands of all experiments, and those of spectra by magnitude and phase.
 pub fn bands(
     problem: &Problem,
     predict: &dyn Predict,
     local: &Local,
     refusals: &mut Vec<String>,
-) -> Result<Vec<Band>, Fault> {
+) -> Result<(Vec<Band>, Vec<SpectrumBand>), Fault> {
     let variables = &problem.inference.band_variables;
     let request = CurveRequest { variables, reach: Reach::Measured, points: POINTS };
     let (curves, linear) = linear(problem, predict, &local.values, &request)?;
@@ -61,9 +73,10 @@ pub fn bands(
         Ok(linear) => linear,
         Err(failed) => {
             refusals.push(format!("There are no bands: {}.", failed.cause));
-            return Ok(Vec::new());
+            return Ok((Vec::new(), Vec::new()));
         }
     };
+    let spectra = spectra(&curves.curves, &linear, local);
     let (mut place, mut bands) = (0, Vec::new());
     for curve in curves.curves {
         let point = |(k, x): (usize, &f64)| {
@@ -88,7 +101,44 @@ pub fn bands(
         let experiment = curve.experiment;
         bands.push(Band { experiment, y: curve.y, x: curve.x, series, points });
     }
-    Ok(bands)
+    Ok((bands, spectra))
+}
+
+/// The bands of spectra: ln H = ln |H| + i φ has the derivatives H'/H. Points that are not
+/// identifiable from the data are left out.
+fn spectra(curves: &[Curve], linear: &Linear, local: &Local) -> Vec<SpectrumBand> {
+    let ends = curves.iter().scan(0, |end, curve| {
+        let begin = *end;
+        *end += curve.points.len();
+        Some((begin, curve))
+    });
+    let all: Vec<(usize, &Curve)> = ends.filter(|(_, curve)| curve.is_over_frequency).collect();
+    let part = |experiment: &str, name: &str| {
+        let mut own = all.iter().filter(|(_, curve)| curve.experiment == experiment);
+        own.find(|(_, curve)| curve.y[0] == name)
+    };
+    let band = |(re, real): &(usize, &Curve)| {
+        let (im, imaginary) = part(&real.experiment, PARTS[1])?;
+        let point = |(k, x): (usize, &f64)| {
+            let [re, im] = [re + k, im + k];
+            let value = Number::new(linear.values[re], linear.values[im]);
+            let pairs = linear.gradients[re].iter().zip(&linear.gradients[im]);
+            let (magnitude, phase): (Vec<f64>, Vec<f64>) = pairs
+                .map(|(re, im)| Number::new(*re, *im) / value)
+                .map(|own| (own.re, own.im.to_degrees()))
+                .unzip();
+            let half = |gradient: &[f64]| {
+                let variance = local.information.variance_of(gradient)?;
+                Some(local.quantile * variance.sqrt())
+            };
+            let halves = half(&magnitude).zip(half(&phase));
+            halves.map(|(magnitude, phase)| [*x, value.re, value.im, magnitude, phase])
+        };
+        let points = real.points.iter().enumerate().filter_map(point).collect();
+        let is_one = real.points == imaginary.points;
+        is_one.then(|| SpectrumBand { experiment: real.experiment.clone(), points })
+    };
+    all.iter().filter(|(_, curve)| curve.y[0] == PARTS[0]).filter_map(band).collect()
 }
 
 impl Band {

@@ -1,6 +1,8 @@
 //! What inference has found, and its tables and sentences.
 
-use super::{Band, BandPoint, Bootstrap, Contribution, Likelihood, NextMeasurement, Posterior};
+use super::{
+    Band, BandPoint, Bootstrap, Contribution, Likelihood, NextMeasurement, Posterior, SpectrumBand,
+};
 use crate::problem::{Finding, SolvedState};
 use crate::table::quoted;
 use serde::{Deserialize, Serialize};
@@ -14,6 +16,9 @@ pub struct Inferred {
     /// Bands about the curves, for each experiment and variable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bands: Vec<Band>,
+    /// Bands of spectra by magnitude and phase.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spectra: Vec<SpectrumBand>,
     /// The next measurement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_measurement: Option<NextMeasurement>,

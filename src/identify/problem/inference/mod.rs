@@ -24,7 +24,7 @@ mod term;
 pub use adjusted::{Adjustments, Cause, Distribution, Prior, adjust};
 
 pub(crate) use adjusted::adjusted_from;
-pub use bands::{Band, BandPoint};
+pub use bands::{Band, BandPoint, SpectrumBand};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
 pub use comparison::{Compared, Comparison, Nested, compare};
 pub use constraint::Constraint;
@@ -109,7 +109,7 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
         let make = |refusals: &mut Vec<String>| {
             bands::bands(&run.problem, predict.as_ref(), &local, refusals)
         };
-        found.bands = parts.part(BANDS, make)?;
+        (found.bands, found.spectra) = parts.part(BANDS, make)?;
     }
     let is_computed =
         ErrorModel::of(&run.problem) == ErrorModel::Computed || !run.problem.is_normal();
