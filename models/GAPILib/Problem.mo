@@ -8,6 +8,7 @@ record Problem "What to identify, from which data, and how: the argument of iden
   String noiseStates[:] = fill("", 0) "States on which process noise acts: what is measured is compared with its prediction from all earlier samples";
   Real noiseValues[:] = fill(0.0, 0) "The standard deviations that it adds in 1 s; 0, or none, to estimate them";
   Real noiseInitial[:] = fill(0.0, 0) "Standard deviations of the initial values of these states; none for 0";
+  Integer predictionSteps = 0 "With process noise: over how many samples outputs are predicted as well, 2 or more; 0 for one sample alone";
   String fitness[:] = {"sum_of_squares"} "Fitness functions; several for nsga2";
   String method = "" "Optimizer; empty for the default";
   String settings[:] = fill("", 0) "Names of settings of the optimizer";

@@ -107,7 +107,11 @@ impl Model for CompiledModel {
 
     fn names(&self) -> Vec<String> {
         let driver = self.driven.as_ref().map(|(_, parameter)| parameter.as_str());
-        let names = self.program.variables().iter().map(|variable| &*variable.name);
+        // Not those that the compiler has added, whose names are quoted.
+        let is_own =
+            |variable: &&VariableInfo| !(variable.protected && variable.name.starts_with('\''));
+        let own = self.program.variables().iter().filter(is_own);
+        let names = own.map(|variable| &*variable.name);
         names.filter(|name| Some(*name) != driver).map(str::to_owned).collect()
     }
 

@@ -84,11 +84,22 @@ impl SolvedSeries {
     }
 
     /// The root mean squared residual of a simulation from the start, where predictions see the data.
-    fn error_of_simulation(&self) -> Option<f64> {
+    pub(crate) fn error_of_simulation(&self) -> Option<f64> {
         let pairs = self.points.iter().zip(&self.simulation);
         let squares: f64 = pairs.map(|(p, s)| elementary::powi(p[1] - s[1], 2)).sum();
         let n = self.simulation.len();
         (n > 0).then(|| (squares / n as f64).sqrt())
+    }
+
+    /// The root mean squared residual of predictions over several samples.
+    pub(crate) fn error_ahead(&self) -> Option<f64> {
+        let ahead = self.ahead.as_ref()?;
+        let measured =
+            |x: f64| self.points.iter().find(|point| point[0] == x).map(|point| point[1]);
+        let residuals = ahead.points.iter().filter_map(|[x, y, _]| Some(measured(*x)? - y));
+        let squares: Vec<f64> = residuals.map(|own| own * own).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        (!squares.is_empty()).then(|| mean.sqrt())
     }
 
     /// Whether what a prediction misses is white noise, in words.
@@ -168,11 +179,16 @@ impl Solution {
             .map(|(own, simulated)| {
                 let unit =
                     if own.y[1].is_empty() { String::new() } else { format!(" {}", own.y[1]) };
+                let ahead = own.ahead.as_ref().zip(own.error_ahead());
+                let ahead = ahead.map(|(ahead, error)| {
+                    format!(", over {} samples: {}{unit}", ahead.samples, significant(error, 3))
+                });
                 format!(
-                    "{}: {}{unit} (predictions: {}{unit})",
+                    "{}: {}{unit} (predictions: {}{unit}{})",
                     label(own),
                     significant(simulated, 3),
-                    significant(own.rmse, 3)
+                    significant(own.rmse, 3),
+                    ahead.unwrap_or_default()
                 )
             })
             .collect();

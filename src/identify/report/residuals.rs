@@ -24,6 +24,9 @@ pub fn section(view: &View) -> Option<Section> {
     let tested = solution.series.iter().any(|series| series.residual_test.is_some());
     let content = html! {
         (scrolling("Table of the residuals", &table(view)))
+        @if solution.series.iter().any(|own| !own.simulation.is_empty()) {
+            (scrolling("Table of the predictions", &predictions(solution)))
+        }
         (distributions(solution))
         (explained(&RMSE))
         (explained(&R_SQUARED))
@@ -128,6 +131,40 @@ fn correlogram(own: &SolvedSeries) -> Markup {
     let label = format!("Autocorrelation of the residuals of {} up to lag {LAGS}", own.y[0]);
     let caption = html! { strong { (own.y[0]) } ": autocorrelation; noise lies within ±2/√n." };
     small_figure(&drawn, &label, &caption)
+}
+
+/// How large residuals are by how far ahead was predicted.
+fn predictions(solution: &Solution) -> Markup {
+    let all = || solution.series.iter().filter(|own| !own.simulation.is_empty());
+    let steps = all().find_map(|own| Some(own.ahead.as_ref()?.samples));
+    let shown = |error: Option<f64>, own: &SolvedSeries| {
+        error.map_or_else(|| "–".to_owned(), |error| engineering(error, 4, &own.y[1]))
+    };
+    html! {
+        table {
+            thead {
+                tr {
+                    th scope="col" { "RMSE of" }
+                    th scope="col" { "predictions over 1 sample" }
+                    @if let Some(steps) = steps { th scope="col" { "over " (steps) " samples" } }
+                    th scope="col" { "simulation from the start" }
+                }
+            }
+            tbody {
+                @for own in all() {
+                    tr {
+                        th scope="row" {
+                            @if !own.experiment.is_empty() { (own.experiment) " / " }
+                            (own.y[0])
+                        }
+                        td { (shown(Some(own.rmse), own)) }
+                        @if steps.is_some() { td { (shown(own.error_ahead(), own)) } }
+                        td { (shown(own.error_of_simulation(), own)) }
+                    }
+                }
+            }
+        }
+    }
 }
 
 fn table(view: &View) -> Markup {

@@ -9,6 +9,7 @@ use super::enclosing_class::Base;
 use super::file::{ExperimentEntry, OneOrMany, ProblemFile, Role};
 use super::inputs::Undecided;
 use super::misread::{self, Doubts};
+use super::noise_test::{self, PREDICTION_STEPS};
 use super::operators::{self, Named};
 use super::segments::Segment;
 use super::{experiment, imported, noise, own_fitness, rest, set_file, spectrum};
@@ -151,7 +152,8 @@ fn build_in(
     adjusted(file, &mut problem, &logarithmic).map_err(alone)?;
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
-    let noise = (!file.noise.is_empty()).then(|| noise::estimated(file));
+    let noise =
+        noise_test::Questions::of(file).at(file.places.at(&[PREDICTION_STEPS])).map_err(alone)?;
     let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise, rests };
     Ok(Built {
         problem,

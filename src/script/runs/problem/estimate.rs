@@ -9,7 +9,8 @@ use crate::Session;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::identify::problem::{
-    Experiment, Free, ModelSimulator, Observation, Series, Simulate, SolvedSeries, SolvedState,
+    Experiment, Free, ModelSimulator, Observation, PredictedAhead, Series, Simulate, SolvedSeries,
+    SolvedState,
 };
 use crate::models::filter::{Ahead, FIRST_BEGIN, UncertainStates, pairs};
 use crate::models::imported::refuse_as_text;
@@ -102,7 +103,7 @@ pub fn estimate(
     if let Some(steps) = options.steps {
         let ahead = found.ahead(steps).map_err(one)?;
         let name = chosen.experiment.name.clone();
-        let (run, ..) = with(Filtering::Ahead(name, ahead.clone(), more))?;
+        let (run, ..) = with(Filtering::Ahead([(name, ahead.clone())].into(), more))?;
         let predicted = found.predicted_over(&ahead, &run, &values).map_err(one)?;
         others.push((format!("predicted over {steps}"), predicted));
     }
@@ -256,6 +257,11 @@ impl<'a> Estimation<'a> {
         Ok(found)
     }
 
+    /// The name of the experiment.
+    pub(super) fn experiment(&self) -> &str {
+        &self.experiment.name
+    }
+
     /// The row of this number, from columns in the order in which they are observed.
     fn row(&self, at: usize, columns: &[Vec<f64>]) -> Row {
         let n = self.states.names.len();
@@ -332,9 +338,10 @@ impl<'a> Estimation<'a> {
     }
 
     /// Puts predictions from earlier rows alone in the place of those that the likelihood compares, which
-    /// have seen the outputs before them in their rows; the first output has none before it.
+    /// have seen the outputs before them in their rows. Between rows there are none, so that no curve goes
+    /// through them.
     pub(super) fn predict(&self, solved: &mut [SolvedSeries]) {
-        for (k, solved) in solved.iter_mut().enumerate().skip(1) {
+        for (k, solved) in solved.iter_mut().enumerate() {
             let (means, deviations) = self.all_from_earlier_rows(k);
             let at = |time: &f64| self.times.binary_search_by(|own| own.total_cmp(time)).ok();
             let found: Option<Vec<usize>> = self.series[k].x.iter().map(at).collect();
@@ -351,8 +358,27 @@ impl<'a> Estimation<'a> {
         rows.filter(|(time, _)| self.series.iter().any(|own| sample_at(own, *time).is_some()))
     }
 
+    /// Notes the predictions over so many samples beside what was measured.
+    pub(super) fn predict_over(
+        &self,
+        ahead: &Ahead,
+        (run, values): (&FilteredExperiment, &[f64]),
+        solved: &mut [SolvedSeries],
+    ) -> Result<(), Fault> {
+        let found = self.predicted_over(ahead, run, values)?;
+        for ((solved, series), [mean, sd]) in solved.iter_mut().zip(&self.series).zip(&found) {
+            let point = |time: &f64| {
+                let at = self.times.binary_search_by(|own| own.total_cmp(time)).ok()?;
+                mean[at].is_finite().then_some([*time, mean[at], sd[at]])
+            };
+            let points = series.x.iter().filter_map(point).collect();
+            solved.ahead = Some(PredictedAhead { samples: ahead.steps, points });
+        }
+        Ok(())
+    }
+
     /// The states from which predictions over so many samples begin.
-    fn ahead(&self, steps: usize) -> Result<Ahead, Fault> {
+    pub(super) fn ahead(&self, steps: usize) -> Result<Ahead, Fault> {
         let count = self.sampled().count();
         if !(2..count).contains(&steps) {
             return Err(fault!(BAD_OPTION, "predictions over {steps} samples are not possible")

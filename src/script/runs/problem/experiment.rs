@@ -131,7 +131,14 @@ pub(super) fn rows(
     let [place, cuts] = [["x"], ["segments"]].map(|way| entry.places.at(&way));
     let (x, name, own) = x_of(entry, table).at(place)?;
     notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
-    let column = data::column(table, &x, &name, notes).at(place)?;
+    let is_missing = entry.x.is_none() && table.matrix(&own).is_err();
+    let column = data::column(table, &x, &name, notes).map_err(|fault| match is_missing {
+        true => fault.help(
+            "say which one is that of the times: `x = { variable = \"time\", column = \"…\" }`",
+        ),
+        false => fault,
+    });
+    let column = column.at(place)?;
     let count = column.values.len();
     if name != "time" {
         if entry.segments.is_some() {

@@ -9,6 +9,7 @@ use crate::source::{SourceId, Span};
 use crate::{bail, fault};
 use indexmap::IndexMap;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::path::PathBuf;
 
@@ -28,6 +29,8 @@ pub(super) struct ProblemFile {
     /// Process noise of states.
     #[serde(default)]
     pub noise: IndexMap<String, NoiseEntry>,
+    /// Samples over which the report predicts, with process noise.
+    pub prediction_steps: Option<usize>,
     pub experiment: Vec<ExperimentEntry>,
     pub fitness: Option<OneOrMany>,
     #[serde(default)]
@@ -267,8 +270,8 @@ pub(super) enum Filtering {
     Simulated(MoreTimes),
     /// Noise and measurements, and after them those that are later.
     Smoothed(MoreTimes),
-    /// In the experiment of this name, the states that the filter has found so many samples before.
-    Ahead(String, Ahead, MoreTimes),
+    /// In the experiments of these names, the states that the filter has found so many samples before.
+    Ahead(BTreeMap<String, Ahead>, MoreTimes),
 }
 
 /// Times at which states are estimated besides those of the rows.

@@ -58,18 +58,13 @@ pub(super) fn filtered(
     note_certain_start(file, (&noise, &measured, start), &experiment.name, notes);
     let place = file.places.at(&["noise"]);
     let more = match &file.filtering {
-        Filtering::Smoothed(more) | Filtering::Simulated(more) | Filtering::Ahead(_, _, more) => {
+        Filtering::Smoothed(more) | Filtering::Simulated(more) | Filtering::Ahead(_, more) => {
             times(entry, rows, start, *more).at(Span::NONE).map_err(one)?
         }
         Filtering::Filtered | Filtering::WithoutNoise => Vec::new(),
     };
     experiment.settings.stop = more.iter().copied().fold(experiment.settings.stop, f64::max);
-    let purpose = match &file.filtering {
-        Filtering::Smoothed(_) => Purpose::Smoothing,
-        Filtering::Ahead(name, ahead, _) if *name == experiment.name => Purpose::Ahead(ahead),
-        _ => Purpose::Likelihood,
-    };
-    let what = (&noise[..], &measured[..], purpose);
+    let what = (&noise[..], &measured[..], purpose(&file.filtering, &experiment.name));
     let found = filter::filtered(session, class, what, (start, &more), place)?;
     let program = found.translated.program.clone();
     experiment.model = Arc::new(CompiledModel::new(&file.model, program.clone()));
@@ -87,6 +82,15 @@ pub(super) fn filtered(
         notes.add(format!("{experiment}: `{name}` has no `sigma`; it is estimated"));
     }
     Ok((experiment, series, program, found.states))
+}
+
+/// What an experiment is filtered for.
+fn purpose<'f>(filtering: &'f Filtering, experiment: &str) -> Purpose<'f> {
+    match filtering {
+        Filtering::Smoothed(_) => Purpose::Smoothing,
+        Filtering::Ahead(all, _) => all.get(experiment).map_or(Purpose::Likelihood, Purpose::Ahead),
+        _ => Purpose::Likelihood,
+    }
 }
 
 /// The times of rows at which nothing was measured, and those that are asked for besides.

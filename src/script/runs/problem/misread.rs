@@ -43,8 +43,8 @@ pub(super) struct Doubts {
     pub undecided: Vec<Undecided>,
     /// Columns that may be read otherwise.
     pub readings: Vec<Changed>,
-    /// With process noise the densities that are estimated.
-    pub noise: Option<Vec<String>>,
+    /// With process noise what it is compared with.
+    pub noise: Option<noise_test::Questions>,
     /// Experiments that are to be at rest when their data begin ([`super::rest`]).
     pub rests: Vec<[Experiment; 2]>,
 }
@@ -63,8 +63,8 @@ impl Doubts {
     ) -> Result<(), Fault> {
         solution.findings.extend(rest::not_reached(run, &self.rests));
         interpolation::try_others(session, (run, solution), &self.undecided, again)?;
-        if let Some(names) = &self.noise {
-            noise_test::compare(session, (run, solution), names, again)?;
+        if let Some(questions) = &self.noise {
+            noise_test::compare(session, (run, solution), questions, again)?;
         }
         run.evaluation.show_by(session.world.status());
         let tried = try_readings(session, (run, solution), &self.readings, again);

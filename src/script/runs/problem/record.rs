@@ -1,6 +1,7 @@
 //! From the record `GAPILib.Problem` of a script to the entries of a problem's file, so that both
 //! forms mean the same.
 
+use super::noise_test::PREDICTION_STEPS;
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::operators::KINDS;
@@ -33,6 +34,10 @@ pub(super) fn table(record: &RecordValue) -> Result<Table, Fault> {
     }
     put(&mut file, "parameters", parameters);
     put(&mut file, "noise", noise(&fields)?);
+    let steps: i64 = fields.get("predictionSteps")?;
+    if steps != 0 {
+        put(&mut file, PREDICTION_STEPS, steps);
+    }
     let experiments = fields.records("experiments")?;
     let experiments: Result<Vec<Entry>, Fault> =
         experiments.iter().map(|entry| Ok(Entry::Table(experiment(&Fields(entry))?))).collect();

@@ -27,8 +27,17 @@ const DEEPER: [(&str, &str); 6] = [
     ("unit", "a column: `outputs = { T = { column = \"T\", unit = \"degC\" } }`"),
 ];
 /// Entries above the first table in brackets.
-const TOP: [&str; 8] =
-    ["title", "model", "files", "fitness", "seed", "searches", "constraints", "bands"];
+const TOP: [&str; 9] = [
+    "title",
+    "model",
+    "files",
+    "fitness",
+    "seed",
+    "searches",
+    "constraints",
+    "bands",
+    "prediction_steps",
+];
 /// Entries of an experiment, of which there may be several.
 const OF_EXPERIMENTS: [&str; 6] = ["data", "x", "outputs", "inputs", "start", "stop_time"];
 
