@@ -4,7 +4,8 @@
 //! ```text
 //! system                 registers, parameter values, evaluation: the DaeSystem of the integrators
 //! initialization         the initial system and the first instant; parameter_path, where parameters
-//!                        that were set are far from those of the model
+//!                        that were set are far from those of the model; given_start, where another
+//!                        simulation has ended
 //! event_iteration        discrete equations until pre(v) = v, mode_search where that does not end
 //! newton                 torn loops: Newton, then global_newton and levenberg_marquardt; zeros that
 //!                        are isolated though the Jacobian is singular: multiple_roots; a start
@@ -26,6 +27,7 @@ mod event_iteration;
 mod exchange;
 mod execution;
 mod failure_messages;
+mod given_start;
 mod global_newton;
 mod initialization;
 mod instants;
@@ -64,4 +66,5 @@ pub use loop_effort::LoopEffort;
 pub use modes::Treated;
 pub use simulation_log::LogMessage;
 pub use singular_systems::Undetermined;
+pub use state::GivenStart;
 pub use system::System;

@@ -220,3 +220,13 @@ pub(super) struct MessageState {
     /// The conditions of assertions, as evaluated last.
     pub(super) hold: Vec<f64>,
 }
+
+/// Values that states and discrete variables have at the start, whatever the initial equations say; all
+/// other variables follow from them.
+#[derive(Debug, Clone, Default)]
+pub struct GivenStart {
+    /// Positions among the states, and values.
+    pub states: Vec<(usize, f64)>,
+    /// Positions of discrete variables among the variables, and values.
+    pub discrete: Vec<(usize, f64)>,
+}

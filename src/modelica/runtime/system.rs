@@ -5,7 +5,9 @@ use super::instants::{Change, Stage, either, same_time};
 use super::newton::{Attempts, LoopSolver};
 use super::partial_observation::OtherVariables;
 use super::sensitivity_state::Sensitivity;
-use super::state::{DelayState, EventState, LoopState, MessageState, OutputState, RelationState};
+use super::state::{
+    DelayState, EventState, GivenStart, LoopState, MessageState, OutputState, RelationState,
+};
 use super::state_selection::Choice;
 use crate::codegen::code::{Assertions, LogAssertion, Step};
 use crate::codegen::memory::Memory;
@@ -47,6 +49,8 @@ pub struct System {
     pub(super) events: EventState,
     pub(super) outputs: OutputState,
     pub(super) messages: MessageState,
+    /// What simulations begin with.
+    pub(super) given_start: Option<Box<GivenStart>>,
 }
 
 impl Program {
@@ -73,6 +77,7 @@ impl System {
             events: EventState::new(&program),
             outputs: OutputState::new(&program),
             messages: MessageState::default(),
+            given_start: None,
             program,
         };
         system.evaluate_nominals();
@@ -522,7 +527,8 @@ impl Residual for System {
         self.relations.is_at_start = true;
         let done = self.solve_for_start(t, y);
         self.loops.is_solved = false;
-        done
+        done?;
+        self.take_given_start(t, y)
     }
 
     fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {

@@ -8,7 +8,6 @@ pub mod checking;
 pub mod classes;
 pub mod compiled;
 pub(crate) mod constant_cache;
-mod continuation;
 pub mod documents;
 pub mod exported;
 pub(crate) mod filter;

@@ -2,7 +2,6 @@
 
 use super::changes::Changes;
 use super::compiled::Current;
-use super::continuation::Continued;
 use super::final_state::FinalState;
 use super::hardest::{Hardest, hardest};
 use super::places::{in_argument, placed, strings, where_named};
@@ -19,7 +18,7 @@ use crate::errors::{
 };
 use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::results::{ResultTable, Series, Values};
-use crate::runtime::{LogMessage, System, Treated, Undetermined};
+use crate::runtime::{GivenStart, LogMessage, System, Treated, Undetermined};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
 use crate::source::Span;
 use crate::{bail, causalize, fault, syntax};
@@ -440,31 +439,30 @@ pub fn simulate(
         Some(only) => Trajectory::keeping(recorded_columns(model, only)),
         None => Trajectory::default(),
     };
-    system.system.listen();
+    system.listen();
     let mut simulator = Simulator::new();
     let run = simulator.run(&mut system, &settings, &mut trajectory);
-    report_log(session, &system.system);
-    report_treatments(session, &system.system);
-    report_undetermined(session, &system.system);
-    report_notices(session, &system.system);
-    let written = system.system.journal().carry_out(session).at(call);
+    report_log(session, &system);
+    report_treatments(session, &system);
+    report_undetermined(session, &system);
+    report_notices(session, &system);
+    let written = system.journal().carry_out(session).at(call);
     let why = match run {
         Ok(_) => {
             written?;
             let span = (settings.start, settings.stop);
-            let end = FinalState::of(model, &system.system, &trajectory, span);
+            let end = FinalState::of(model, &system, &trajectory, span);
             session.models.end = Some(end);
             None
         }
         Err(_) if session.world.interrupted() => {
             Some(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
-        Err(error) => Some(system.system.explain(&error)),
+        Err(error) => Some(system.explain(&error)),
     };
     let has_begun = !trajectory.is_empty();
-    let hardest =
-        settings.counts_effort.then(|| hardest(session, &system.system, simulator.effort()));
-    let table = result_table(model, &system.system, trajectory, options.only.as_ref());
+    let hardest = settings.counts_effort.then(|| hardest(session, &system, simulator.effort()));
+    let table = result_table(model, &system, trajectory, options.only.as_ref());
     let simulated = Simulated { table, statistics: *simulator.statistics(), hardest };
     match why {
         None => Ok(simulated),
@@ -559,12 +557,9 @@ fn report_log(session: &mut Session, system: &System) {
 fn prepared(
     session: &mut Session,
     model: &Translated,
-) -> Result<(Option<Arc<Translated>>, Continued), Diagnostic> {
+) -> Result<(Option<Arc<Translated>>, System), Diagnostic> {
     let call = session.call_site();
-    let untouched = || {
-        let (states, discrete) = (Vec::new(), Vec::new());
-        Continued { system: model.program.system(), states, discrete }
-    };
+    let untouched = || model.program.system();
     let last = session.models.last().filter(|last| std::ptr::eq(&***last, model)).cloned();
     let Some(last) = last else { return Ok((None, untouched())) };
     if let Some(current) = &session.models.current {
@@ -578,7 +573,7 @@ fn prepared(
 }
 
 /// The system of a model, with the values of the current one.
-fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault> {
+fn with_values(current: &Current, model: &Translated) -> Result<System, Fault> {
     let mut system = model.program.system();
     for (name, value) in &current.overrides {
         system.set_parameter(model.program.find_parameter(name)?, *value)?;
@@ -589,7 +584,8 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
     let variables = model.program.variables().iter().enumerate();
     let discrete = variables.filter(|(_, v)| v.variability == Variability::Discrete);
     let discrete = discrete.filter_map(|(at, v)| Some((at, value(&v.name)?))).collect();
-    Ok(Continued { system, states, discrete })
+    system.begin_with(GivenStart { states, discrete });
+    Ok(system)
 }
 
 /// Which columns hold a variable that is recorded.
@@ -677,7 +673,7 @@ impl Session {
     pub(super) fn parameters_of(&mut self, model: &Arc<Translated>) -> Result<System, Diagnostic> {
         let call = self.call_site();
         let mut system = match &self.models.current {
-            Some(current) => with_values(current, model).at(call)?.system,
+            Some(current) => with_values(current, model).at(call)?,
             None => model.program.system(),
         };
         let computed = system.evaluate_parameters();

@@ -189,6 +189,24 @@ fn a_simulation_with_inputs_keeps_the_annotation() {
     assert_ne!(annotated, run(&["--tolerance", "1e-4"]));
 }
 
+/// The simulation sees the samples: it makes a step for each, with a method of one step.
+#[test]
+fn a_simulation_with_samples_steps_from_one_to_the_next() {
+    let text = "model M input Real u; Real x(start = 1, fixed = true); equation \
+                der(x) = u - x*x; annotation(experiment(StopTime = 100)); end M;";
+    let row = |k: usize| format!("{k},{}\n", 0.5 + (k * k % 7) as f64 / 7.0);
+    let data: String = (0..=100).map(row).collect();
+    let here = folder(&[("M.mo", text), ("u.csv", &format!("time,u\n{data}"))]);
+    let own = ["simulate", "M.mo", "--input", "u.csv", "--interpolation", "hold", "--stats"];
+    let (code, out, errors) = gapi(&here, &own);
+    assert_eq!(code, 0, "{out}{errors}");
+    let row = |name: &str| {
+        out.lines().find_map(|line| line.trim().strip_prefix(name)?.trim().parse::<u64>().ok())
+    };
+    let explicit = row("of these explicit, as not stiff");
+    assert!(explicit.is_some() && explicit == row("accepted steps"), "{out}");
+}
+
 #[test]
 fn inputs_follow_the_columns_of_a_file() {
     let model = "model Tank
