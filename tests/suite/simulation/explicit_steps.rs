@@ -74,6 +74,23 @@ fn a_tank_follows_its_held_inflow_in_one_step_for_each_sample() {
 }
 
 #[test]
+fn a_tank_faster_than_its_samples_takes_some_explicit_steps_for_each() {
+    let mut exact: f64 = 0.3;
+    for u in &values()[..SAMPLES] {
+        let (root, part) = (u.sqrt(), (40.0 * 0.05 * u.sqrt()).tanh());
+        exact = root * (exact + root * part) / (root + exact * part);
+    }
+    // λ Δ is about -5.
+    let program = driven(&TANK.replace("u - k*x^2", "40*(u - k*x^2)"), true);
+    let (trajectory, free) = run(&mut observing(&program, "x"), true, 1e-6);
+    assert_eq!(free.explicit_steps, free.steps);
+    let error = (end(&trajectory) - exact).abs();
+    assert!(error < 1e-6, "{error:e}");
+    let (_, named) = run(&mut observing(&program, "x"), false, 1e-6);
+    assert!(2 * free.attempts() < named.attempts(), "{free:?} {named:?}");
+}
+
+#[test]
 fn derivatives_are_those_of_difference_quotients() {
     for is_held in [true, false] {
         let program = driven(TANK, is_held);

@@ -9,10 +9,12 @@
 //! ρ(J) ≤ min(‖D⁻¹ J D‖₁, ‖D⁻¹ J D‖∞),   D = diag(nominal)          ρ Δ ≤ REACH
 //! ```
 //!
-//! with the mean distance Δ of the samples of inputs, or else a small part of the simulation. Where the
-//! steps nevertheless become much shorter than Δ, the implicit method takes over for the rest of the
-//! simulation. The method is that of Dormand and Prince of order 5; of order 8 where the tolerance is tight
-//! and no sample cuts the steps.
+//! with the mean distance Δ of the samples of inputs, or else a small part of the simulation. With samples
+//! the method suits somewhat faster systems, too, ρ Δ ≤ STEPS REACH: some explicit steps from sample to
+//! sample cost less than the steps of low order that a multistep method begins with after each. Where the
+//! steps nevertheless become shorter, the implicit method takes over for the rest of the simulation. The
+//! method is that of Dormand and Prince of order 5; of order 8 where the tolerance is tight and no sample
+//! cuts the steps.
 
 use super::explicit::ExplicitRungeKutta;
 use super::{Integrator, dop853, dopri5};
@@ -20,13 +22,17 @@ use crate::sim::{DaeSystem, Failure, Settings};
 
 /// The interval of stability of the method on the negative real axis is 3.3 long.
 const REACH: f64 = 3.0;
+/// So many steps from sample to sample are worth it. With a cell of two RC elements and 3,600 held
+/// samples, the implicit method makes 10 to 17 steps at a tolerance of 1e-6 where λ Δ is -1 to -10.
+const STEPS: f64 = 8.0;
 /// Fewer samples than this say nothing of the steps.
 const FEWEST: f64 = 50.0;
 /// Parts of the simulation that are steps without samples.
 const PARTS: f64 = 100.0;
-/// So many attempts of steps must lead over some distances: this many of them may be made for each.
+/// So many attempts of steps must lead over some distances: this many of them may be made for each. A tank
+/// with held inflows of random size and λ Δ = -5 takes about 12, and the implicit method 45, at 1e-6.
 const ATTEMPTS: u64 = 100;
-const MOST_ATTEMPTS: f64 = 4.0;
+const MOST_ATTEMPTS: f64 = 3.0 * STEPS;
 /// The same where there are no samples, and the tolerance alone shortens steps.
 const MOST_ATTEMPTS_FREE: f64 = 40.0;
 /// Tolerances from which on the method of order 8 needs fewer evaluations.
@@ -137,9 +143,12 @@ impl Nonstiff {
         let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
         let radius = largest(&self.columns).min(largest(&self.rows));
         let is_finite = self.columns.iter().all(|sum| sum.is_finite());
-        let most = if distance.is_sampled { MOST_ATTEMPTS } else { MOST_ATTEMPTS_FREE };
+        let (steps, most) = match distance.is_sampled {
+            true => (STEPS, MOST_ATTEMPTS),
+            false => (1.0, MOST_ATTEMPTS_FREE),
+        };
         let way = ATTEMPTS as f64 / most * distance.length;
         let patience = Patience { way, time: t, attempts: 0 };
-        Ok((is_finite && radius * distance.length <= REACH).then_some(patience))
+        Ok((is_finite && radius * distance.length <= steps * REACH).then_some(patience))
     }
 }
