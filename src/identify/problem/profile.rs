@@ -251,6 +251,15 @@ enum Care {
     AllStarts,
 }
 
+/// What fits best where one parameter is held.
+struct Fit {
+    /// Where it is held, as a fraction of its range.
+    place: f64,
+    values: Vec<f64>,
+    /// The sum of squares.
+    sum: f64,
+}
+
 /// Connected values within the limit, as fractions of the range; `None` where it continues to the
 /// end.
 #[derive(Clone, Copy)]
@@ -308,10 +317,9 @@ impl ProfileWalk<'_> {
     ) -> Result<Piece, Fault> {
         let mut piece = Piece { ends: [None; 2], cut: [None; 2], complete: [true; 2] };
         for (side, step) in [-first, first].into_iter().enumerate() {
-            let mut values = from.0.to_vec();
-            let inside = (free.fraction(from.0[k]), from.1);
-            let crossing = self.until_crossing(free, k, inside, step, &mut values, points)?;
-            piece.ends[side] = crossing;
+            let (place, values) = (free.fraction(from.0[k]), from.0.to_vec());
+            let inside = Fit { place, values, sum: from.1 };
+            piece.ends[side] = self.until_crossing(free, k, inside, step, points)?;
             piece.cut[side] = self.cut.take();
             piece.complete[side] = !self.is_over;
         }
@@ -333,10 +341,10 @@ impl ProfileWalk<'_> {
             if own.contains(place) || pieces.iter().any(|piece| piece.contains(place)) {
                 continue;
             }
-            let mut values = start.clone();
-            let sum = self.fit(free, k, place, &mut values, points, Care::OneStart)?;
-            if let Some(sum) = sum.filter(|sum| *sum <= self.limit) {
-                pieces.push(self.piece(free, k, (&values, sum), first, points)?);
+            let from = [start.clone()];
+            let found = self.fit((free, k, place), &from, points, Care::OneStart)?;
+            if let Some(found) = found.filter(|found| found.sum <= self.limit) {
+                pieces.push(self.piece(free, k, (&found.values, found.sum), first, points)?);
             }
         }
         Ok(pieces)
@@ -348,100 +356,107 @@ impl ProfileWalk<'_> {
         &mut self,
         free: &Free,
         k: usize,
-        mut inside: (f64, f64),
+        mut inside: Fit,
         mut step: f64,
-        values: &mut [f64],
         points: &mut Vec<[f64; 2]>,
     ) -> Result<Option<f64>, Fault> {
+        let mut before: Option<Fit> = None;
         for number in 0..SIDE {
-            let place = (inside.0 + step).clamp(0.0, 1.0);
-            if place == inside.0 {
+            let place = (inside.place + step).clamp(0.0, 1.0);
+            if place == inside.place {
                 break;
             }
-            let before = values.to_vec();
-            let sum = self.fit(free, k, place, values, points, Care::AllStarts)?;
-            let Some(sum) = sum else {
-                self.cut = Some(free.value(inside.0)).filter(|_| !self.is_over);
+            let ahead = before.map(|before| self.on_line([&before, &inside], place));
+            let starts: Vec<Vec<f64>> = ahead.into_iter().chain([inside.values.clone()]).collect();
+            let found = self.fit((free, k, place), &starts, points, Care::AllStarts)?;
+            let Some(found) = found else {
+                self.cut = Some(free.value(inside.place)).filter(|_| !self.is_over);
                 break;
             };
-            if sum > self.limit {
-                values.copy_from_slice(&before);
-                let ends = (inside, (place, sum));
-                return self.crossing(free, k, ends, values, points).map(Some);
+            if found.sum > self.limit {
+                return self.crossing(free, k, [inside, found], points).map(Some);
             }
-            inside = (place, sum);
+            before = Some(std::mem::replace(&mut inside, found));
             step *= GROWTH[usize::from(number >= NEARBY)];
         }
         Ok(None)
     }
 
-    /// The place between `inside` and `outside` at which the sum of squares reaches the limit; the
+    /// The values at `place` on the line through two fits, in fractions of the ranges: near a minimum the
+    /// fits lie on a line.
+    fn on_line(&self, [first, second]: [&Fit; 2], place: f64) -> Vec<f64> {
+        let share = (place - first.place) / (second.place - first.place);
+        let pairs = first.values.iter().zip(&second.values).enumerate();
+        let value = |(k, (first, second)): (usize, (&f64, &f64))| {
+            let free = self.refit.parameter(k);
+            let [first, second] = [first, second].map(|value| free.fraction(*value));
+            free.value((first + share * (second - first)).clamp(0.0, 1.0))
+        };
+        pairs.map(value).collect()
+    }
+
+    /// The place between a fit inside and one outside at which the sum of squares reaches the limit; the
     /// rise is nearly a parabola, so its root is taken along a straight line. Where it jumps, the
-    /// place of the jump. `values` are a fit at `inside`.
+    /// place of the jump.
     fn crossing(
         &mut self,
         free: &Free,
         k: usize,
-        ends: ((f64, f64), (f64, f64)),
-        values: &mut [f64],
+        [mut inside, mut outside]: [Fit; 2],
         points: &mut Vec<[f64; 2]>,
     ) -> Result<f64, Fault> {
-        let (mut inside, mut outside) = ends;
         let (mut same_end, mut was_outside) = (0, None);
         let smallest = points[0][1];
-        let same = SAME.min(SAME_OF_BRACKET * (outside.0 - inside.0).abs());
+        let same = SAME.min(SAME_OF_BRACKET * (outside.place - inside.place).abs());
         let root = |sum: f64| (sum - smallest).max(0.0).sqrt();
         for attempt in 0..JUMPING {
-            let part = (root(self.limit) - root(inside.1)) / (root(outside.1) - root(inside.1));
-            let at = |part: f64| inside.0 + part.clamp(0.05, 0.95) * (outside.0 - inside.0);
-            let jumps = outside.1 - inside.1 > JUMP * (self.limit - smallest);
-            let is_located = (outside.0 - inside.0).abs() <= same;
-            if attempt >= CROSSING && (!jumps || is_located) {
+            let part =
+                (root(self.limit) - root(inside.sum)) / (root(outside.sum) - root(inside.sum));
+            let width = outside.place - inside.place;
+            let at = |part: f64| inside.place + part.clamp(0.05, 0.95) * width;
+            let jumps = outside.sum - inside.sum > JUMP * (self.limit - smallest);
+            if attempt >= CROSSING && (!jumps || width.abs() <= same) {
                 return Ok(at(part));
             }
             // Where the same end is met again, the rise is not a parabola.
             let is_root = attempt < CROSSING && same_end < 2;
             let place = at(if is_root { part } else { 0.5 });
-            let mut there = values.to_vec();
-            let sum = self.fit(free, k, place, &mut there, points, Care::OneStart)?;
-            let Some(sum) = sum else { return Ok(place) };
-            if (sum - self.limit).abs() <= NEAR * (self.limit - smallest) {
+            let starts = [self.on_line([&inside, &outside], place), inside.values.clone()];
+            let found = self.fit((free, k, place), &starts, points, Care::OneStart)?;
+            let Some(found) = found else { return Ok(place) };
+            if (found.sum - self.limit).abs() <= NEAR * (self.limit - smallest) {
                 return Ok(place);
             }
-            let is_outside = sum > self.limit;
+            let is_outside = found.sum > self.limit;
             same_end = if was_outside == Some(is_outside) { same_end + 1 } else { 1 };
             was_outside = Some(is_outside);
-            if is_outside {
-                outside = (place, sum);
-            } else {
-                inside = (place, sum);
-                values.copy_from_slice(&there);
-            }
+            *(if is_outside { &mut outside } else { &mut inside }) = found;
         }
-        Ok(inside.0)
+        Ok(inside.place)
     }
 
-    /// The smallest sum of squares with parameter `k` at `place`; `values` are where the fit begins
-    /// and where it ends.
+    /// The smallest sum of squares with parameter `k` at `place`, from the first of `starts` that can be
+    /// simulated there.
     fn fit(
         &mut self,
-        free: &Free,
-        k: usize,
-        place: f64,
-        values: &mut [f64],
+        (free, k, place): (&Free, usize, f64),
+        starts: &[Vec<f64>],
         points: &mut Vec<[f64; 2]>,
         care: Care,
-    ) -> Result<Option<f64>, Fault> {
+    ) -> Result<Option<Fit>, Fault> {
         if self.refit.simulations >= self.last {
             self.is_over = true;
             return Ok(None);
         }
         let more = if care == Care::AllStarts { self.starts.clone() } else { Vec::new() };
-        let starts = std::iter::once(values.to_vec()).chain(more);
+        let own = starts.iter().cloned().map(|start| (start, true));
         let mut least: Option<(Vec<f64>, f64)> = None;
-        for mut start in starts {
+        for (mut start, is_own) in own.chain(more.into_iter().map(|start| (start, false))) {
+            if is_own && least.is_some() {
+                continue;
+            }
             start[k] = free.value(place);
-            let found = self.refit.from(&start, Some(k))?;
+            let found = self.refit.roughly(&start, k)?;
             least = match (least, found) {
                 (Some(least), Some(found)) if found.1 < least.1 => Some(found),
                 (least, found) => least.or(found),
@@ -451,15 +466,14 @@ impl ProfileWalk<'_> {
             }
         }
         self.is_over |= self.refit.is_cancelled();
-        let Some((found, sum)) = least.filter(|_| !self.is_over) else { return Ok(None) };
-        values.copy_from_slice(&found);
-        points.push([found[k], sum]);
+        let Some((values, sum)) = least.filter(|_| !self.is_over) else { return Ok(None) };
+        points.push([values[k], sum]);
         if sum <= self.limit {
-            self.valley.push(found.clone());
+            self.valley.push(values.clone());
         }
         if self.better.as_ref().is_none_or(|known| sum < known.1) {
-            self.better = Some((found, sum));
+            self.better = Some((values.clone(), sum));
         }
-        Ok(Some(sum))
+        Ok(Some(Fit { place, values, sum }))
     }
 }

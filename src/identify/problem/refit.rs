@@ -14,6 +14,9 @@ const BUDGETS: usize = 8;
 /// A budget that lowers the sum by less than this part of that of a point is that of a descent at its
 /// end: -log L has fallen by less than half of it.
 const ENDED: f64 = 0.01;
+/// Relative offset at which a rough fit ends. What it then lacks of the sum of squares is 1e-6 of the
+/// residual variance for each parameter that is varied.
+const ROUGH: f64 = 1e-3;
 
 /// Fits again and again about the same problem.
 pub(crate) struct Refit<'a> {
@@ -54,6 +57,27 @@ impl<'a> Refit<'a> {
     ///
     /// Those of the method's maker.
     pub fn from(&mut self, start: &[f64], held: Option<usize>) -> Result<Option<Fitted>, Fault> {
+        self.descend(start, held, &mut Options::default())
+    }
+
+    /// The same where parameter `held` stands still and the sum alone counts: the values of the others
+    /// lie within a thousandth of their standard errors.
+    ///
+    /// # Errors
+    ///
+    /// Those of the method's maker.
+    pub fn roughly(&mut self, start: &[f64], held: usize) -> Result<Option<Fitted>, Fault> {
+        let mut how = Options::default();
+        how.set("offset", ROUGH);
+        self.descend(start, Some(held), &mut how)
+    }
+
+    fn descend(
+        &mut self,
+        start: &[f64],
+        held: Option<usize>,
+        how: &mut Options,
+    ) -> Result<Option<Fitted>, Fault> {
         let Some(first) = self.residuals(&[start.to_vec()]).pop().flatten() else {
             return Ok(None);
         };
@@ -62,7 +86,7 @@ impl<'a> Refit<'a> {
         if varied.is_empty() {
             return Ok(Some(best));
         }
-        let mut search = self.search(start, &varied)?;
+        let mut search = self.search(start, &varied, how)?;
         let limit = self.simulations + BUDGET;
         while self.simulations < limit {
             let mut batch = Genomes::with_capacity(varied.len(), 0);
@@ -132,11 +156,12 @@ impl<'a> Refit<'a> {
         &self,
         start: &[f64],
         varied: &[usize],
+        how: &mut Options,
     ) -> Result<Box<dyn crate::ga::optimizer::Optimizer>, Fault> {
         let free = |k: usize| &self.problem.parameters[k];
         let entry = registry::find("method", METHODS, "levenberg_marquardt")?;
         let genes = varied.iter().map(|&k| Gene::new(&free(k).name, 0.0, 1.0));
-        (entry.make)(&mut Options::default())?.start(Setup {
+        (entry.make)(how)?.start(Setup {
             genes: genes.collect::<Result<_, Fault>>()?,
             scales: Vec::new(),
             n_objectives: 1,

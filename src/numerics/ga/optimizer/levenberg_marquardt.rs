@@ -24,7 +24,9 @@ pub const ENTRY: Entry<dyn Method> = Entry {
               middle of the ranges",
     reference: "more-1978",
     make: |options| {
-        Ok(Box::new(LevenbergMarquardt { steps: options.take_whole("steps", 1.0..=1e6, 2000.0)? }))
+        let steps = options.take_whole("steps", 1.0..=1e6, 2000.0)?;
+        let offset = options.take("offset", FINE..=MINIMUM, FINE)?;
+        Ok(Box::new(LevenbergMarquardt { steps, offset }))
     },
 };
 
@@ -58,12 +60,14 @@ const CURVED: u32 = 2;
 
 struct LevenbergMarquardt {
     steps: usize,
+    /// Relative offset at which the descent stops.
+    offset: f64,
 }
 
 impl Method for LevenbergMarquardt {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let start = setup.start.clone().unwrap_or_else(|| vec![0.5; setup.genes.len()]);
-        Ok(Box::new(Descent::new(start, Accuracy::of(&setup), self.steps, FINE)))
+        Ok(Box::new(Descent::new(start, Accuracy::of(&setup), self.steps, self.offset)))
     }
 
     fn needs_residuals(&self) -> bool {
