@@ -109,18 +109,20 @@ fn phases(points: &[Point]) -> Vec<f64> {
 fn areas(band: &SpectrumBand) -> [Vec<Series>; 2] {
     let points: Vec<Point> = band.points.iter().map(|[x, re, im, ..]| [*x, *re, *im]).collect();
     let values = points.iter().map(magnitude).zip(phases(&points));
-    let at: Vec<([f64; 5], (f64, f64))> = band.points.iter().copied().zip(values).collect();
-    let area = |name: &str, edge: fn(&([f64; 5], (f64, f64)), f64) -> f64| {
-        let upper = at.iter().map(|own| (own.0[0], edge(own, 1.0)));
-        let lower = at.iter().rev().map(|own| (own.0[0], edge(own, -1.0)));
+    // The frequency, magnitude and phase, and their half-widths.
+    let at = band.points.iter().zip(values);
+    let at: Vec<[f64; 5]> = at
+        .map(|([x, .., of_size, of_phase], (size, phase))| [*x, size, phase, *of_size, *of_phase])
+        .collect();
+    let area = |name: &str, edge: fn(&[f64; 5], f64) -> f64| {
+        let upper = at.iter().map(|own| (own[0], edge(own, 1.0)));
+        let lower = at.iter().rev().map(|own| (own[0], edge(own, -1.0)));
         let (x, y) = upper.chain(lower).unzip();
         vec![Series { name: name.to_owned(), x, y, mark: Mark::Area, colour: 1 }]
     };
     [
-        area("95 % confidence band", |(own, (size, _)), side| {
-            size * elementary::exp(side * own[3])
-        }),
-        area("", |(own, (_, phase)), side| side.mul_add(own[4], *phase)),
+        area("95 % confidence band", |own, side| own[1] * elementary::exp(side * own[3])),
+        area("", |own, side| side.mul_add(own[4], own[2])),
     ]
 }
 

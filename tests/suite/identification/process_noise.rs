@@ -290,6 +290,7 @@ fn a_report_predicts_over_several_samples() {
     assert!(read("o/report.html").contains("predicted over 3 samples"));
     let cases = [
         (format!("prediction_steps = 1\n{problem}"), "write a number from 2"),
+        (format!("prediction_steps = -3\n{problem}"), "expected a whole number from 0, found -3"),
         (
             format!(
                 "prediction_steps = 3\n{}",

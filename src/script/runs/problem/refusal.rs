@@ -280,6 +280,10 @@ impl<'t> Place<'t> {
             ("a boolean", "`true` or `false`"),
             ("a string", "a text in quotes"),
         ];
+        let negative = message.strip_prefix("invalid value: integer `-");
+        if let Some((number, _)) = negative.and_then(|rest| rest.split_once("`, expected u")) {
+            return fault!(BAD_OPTION, "expected a whole number from 0, found -{number}");
+        }
         let of_type = message.strip_prefix("invalid type: ");
         let worded = match of_type.and_then(|rest| rest.split_once(", expected ")) {
             None => message.to_owned(),
