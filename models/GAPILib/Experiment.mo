@@ -8,6 +8,9 @@ record Experiment "An experiment of a problem: what was measured, and under whic
   String columns[:] = outputs "Their columns";
   Real weights[:] = fill(1.0, size(outputs, 1)) "Every difference counts times this";
   Real sigmas[:] = fill(0.0, 0) "Standard deviations of the errors of their measurements; 0, or none, where not known";
+  String deviations[:] = fill("", 0) "In place of sigmas: columns, variables and formulas with the standard deviations, or estimate; empty where sigmas has a number";
+  String errors[:] = fill("", 0) "How the errors are distributed: normal, lognormal, laplace, loglaplace, student or poisson; empty for normal";
+  Real degreesOfFreedom[:] = fill(0.0, 0) "Those of student; 0, or none, for 4";
   String inputs[:] = fill("", 0) "Inputs of the model that follow columns of the data";
   String inputColumns[:] = inputs "Their columns";
   String settings[:] = fill("", 0) "Parameters that have other values in this experiment";

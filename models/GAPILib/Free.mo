@@ -10,4 +10,5 @@ record Free "A parameter of a problem: free within a range, or fixed, or tied to
   String unit = "" "Unit; empty for that of the model";
   Boolean initialValue = false "Whether the initial value of the state is meant";
   Boolean perExperiment = false "Whether every experiment has its own";
+  String prior = "" "What is known of it without the data, such as \"normal(mean = 1, sd = 0.1)\", \"laplace(median = 1, scale = 0.1)\" or \"uniform\"";
 end Free;

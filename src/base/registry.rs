@@ -100,7 +100,7 @@ impl Choice {
 
     /// The name with the settings as given: `sbx(eta = 5)`.
     pub fn label(&self) -> String {
-        let settings = self.options.numbers.iter().map(|(name, value)| format!("{name} = {value}"));
+        let settings = self.options.numbers().map(|(name, value)| format!("{name} = {value}"));
         match settings.collect::<Vec<_>>().join(", ") {
             none if none.is_empty() => self.name.clone(),
             settings => format!("{}({settings})", self.name),
@@ -146,6 +146,11 @@ pub struct Options {
 }
 
 impl Options {
+    /// The numbers, in the order in which they were added.
+    pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.numbers.iter().map(|(name, value)| (name.as_str(), *value))
+    }
+
     /// Adds an option.
     pub fn set(&mut self, name: &str, value: f64) {
         self.numbers.insert(name.to_owned(), value);

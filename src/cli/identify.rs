@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
+/// The folder in the results for the files that a problem in PEtab becomes.
+const IMPORTED: &str = "imported";
 /// What follows the options of `gapi identify --help`.
 const IDENTIFY_EXAMPLES: &str = "\
 Examples:
@@ -22,7 +24,7 @@ Examples:
   gapi identify one.toml two.toml              compare two models of the same data
   gapi identify my.toml --resume               resume after Ctrl-C, a crash or a power failure
   gapi identify my.toml --watch settings.toml  change settings while it runs
-  gapi identify petab.yaml                     import a problem in PEtab to the folder petab, and run it
+  gapi identify petab.yaml                     import a problem in PEtab into its results, and run it
   gapi identify my.toml --bootstrap --shard 3/16 --out s3   one part of a large study
 
 A problem file:
@@ -184,6 +186,7 @@ pub(super) fn solve_one(
             return Ended::Not(ExitCode::from(2));
         }
     };
+    let of_petab = output.folder.join(IMPORTED);
     let threads = arguments.threads.map(usize::from);
     let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
@@ -204,8 +207,7 @@ pub(super) fn solve_one(
     let problem = match import::is_petab(problem) {
         false => problem,
         true => {
-            let folder = import::default_folder(problem);
-            match import::imported(&mut session, problem, &folder, arguments.overwrite) {
+            match import::for_run(&mut session, problem, &of_petab) {
                 Ok(path) => imported = path,
                 Err(errors) => return Ended::Not(session::failed(&mut session, errors)),
             }

@@ -1,7 +1,7 @@
 //! `gapi import`: models in SBML and problems in PEtab as files of this program.
 
 use super::options::Global;
-use super::session;
+use super::{output, session};
 use crate::diag::{Diagnostic, Fault};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
@@ -68,8 +68,23 @@ pub(super) fn is_petab(file: &Path) -> bool {
 }
 
 /// The folder for what is imported from a file, in the working folder.
-pub(super) fn default_folder(file: &Path) -> PathBuf {
+fn default_folder(file: &Path) -> PathBuf {
     file.file_stem().map_or_else(|| PathBuf::from("imported"), PathBuf::from)
+}
+
+/// Imports a problem into a part of its results, which each run makes again; the path of the problem file.
+///
+/// # Errors
+///
+/// What is wrong with the file, or not supported.
+pub(super) fn for_run(
+    session: &mut Session,
+    file: &Path,
+    folder: &Path,
+) -> Result<PathBuf, Vec<Diagnostic>> {
+    let path = imported(session, file, folder, true)?;
+    session.print(&format!("imported to {}\n", output::shown(folder).display()));
+    Ok(path)
 }
 
 /// Imports a file into a folder; the path of the problem file or of the model.
@@ -77,7 +92,7 @@ pub(super) fn default_folder(file: &Path) -> PathBuf {
 /// # Errors
 ///
 /// What is wrong with the file, or not supported; files that are there with another content.
-pub(super) fn imported(
+fn imported(
     session: &mut Session,
     file: &Path,
     folder: &Path,

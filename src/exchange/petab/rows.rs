@@ -137,6 +137,12 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         false => [first, second],
     };
     let [low, high] = [a, b].map(number);
+    // In version 2, bounds truncate the density.
+    let bounds = [row.get("lowerBound"), row.get("upperBound")];
+    let within = match (row.get("priorDistribution"), bounds) {
+        (Some(_), [Some(min), Some(max)]) => format!(", min = {min}, max = {max}"),
+        _ => String::new(),
+    };
     let text = match (kind, is_on_scale) {
         ("uniform" | "parameterScaleUniform", false) => {
             format!("{{ distribution = \"uniform\", min = {low}, max = {high} }}")
@@ -144,12 +150,14 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         ("parameterScaleUniform", true) => {
             format!("{{ distribution = \"loguniform\", min = {low}, max = {high}{base} }}")
         }
-        ("normal" | "parameterScaleNormal", false) => format!("{{ mean = {low}, sd = {high} }}"),
+        ("normal" | "parameterScaleNormal", false) => {
+            format!("{{ mean = {low}, sd = {high}{within} }}")
+        }
         ("parameterScaleNormal", true) => {
             format!("{{ median = {low}, factor = {high}{base} }}")
         }
         ("laplace" | "parameterScaleLaplace", false) => {
-            format!("{{ distribution = \"laplace\", median = {low}, scale = {high} }}")
+            format!("{{ distribution = \"laplace\", median = {low}, scale = {high}{within} }}")
         }
         ("parameterScaleLaplace", true) => {
             format!("{{ distribution = \"laplace\", median = {low}, factor = {high}{base} }}")

@@ -122,7 +122,7 @@ fn conditions(
             && first != time
         {
             return Err(row.wrong(format!(
-                "`{id}` changes its conditions at {first} and {time}; one change is supported"
+                "`{id}` changes its conditions at {first} and {time}; only its begin is supported"
             )));
         }
         let mut pairs = vec![("conditionId".to_owned(), name.clone())];

@@ -154,6 +154,60 @@ print(\"k area h: \" + String(integer(1e3*values[1] + 0.5)) + \" \" + String(int
     assert!(folder.path().join("results/s/report.html").is_file());
 }
 
+/// What is known of errors and parameters means in a script what it means in a file.
+#[test]
+fn scripts_have_errors_and_priors() {
+    let folder = tempfile::tempdir().unwrap();
+    cooling(folder.path());
+    let file = "model = \"Cooling\"
+files = [\"cooling.mo\"]
+[parameters]
+k = { min = 0.05, max = 5, prior = { mean = 0.9, sd = 0.05 } }
+low = { min = 0.1, max = 20 }
+[[experiment]]
+data = \"cooling.csv\"
+x = { variable = \"time\", column = \"t\" }
+outputs = { h = { column = \"h\", sigma = \"0.3*low\", error = \"student\", degrees_of_freedom = 3 } }
+[method]
+name = \"levenberg_marquardt\"
+";
+    let script = "problem = GAPILib.Problem(modelName = \"Cooling\", files = {\"cooling.mo\"},
+  parameters = {GAPILib.Free(\"k\", min = 0.05, max = 5, prior = \"normal(mean = 0.9, sd = 0.05)\"),
+                GAPILib.Free(\"low\", min = 0.1, max = 20)},
+  experiments = {GAPILib.Experiment(data = \"cooling.csv\", xColumn = \"t\", outputs = {\"h\"},
+    deviations = {\"0.3*low\"}, errors = {\"student\"}, degreesOfFreedom = {3})},
+  method = \"levenberg_marquardt\");
+identify(problem);
+";
+    fs::write(folder.path().join("f.toml"), file).unwrap();
+    fs::write(folder.path().join("s.mos"), script).unwrap();
+    let (code, text) = run(folder.path(), &["f.toml"]);
+    assert_eq!(code, 0, "{text}");
+    let gapi = |script: &str| {
+        fs::write(folder.path().join("s.mos"), script).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_gapi"))
+            .args(["run", "s.mos"])
+            .current_dir(folder.path())
+            .env_remove("MODELICAPATH")
+            .output()
+            .unwrap();
+        [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap()).concat()
+    };
+    let text = gapi(script);
+    let [one, other] = ["results/f", "results/s"].map(|own| {
+        let result = result(folder.path(), own);
+        assert!(result["negative_log_likelihood"].is_number(), "{text}");
+        (result["negative_log_likelihood"].as_f64(), value(&result, "k"), value(&result, "low"))
+    });
+    assert_eq!(one, other, "{text}");
+    let both = script.replace("deviations =", "sigmas = {0.1}, deviations =");
+    let text = gapi(&both);
+    assert!(text.contains("a number in `sigmas` and a string in `deviations`"), "{text}");
+    let other = script.replace("sd = 0.05", "sigma = 0.05");
+    let text = gapi(&other);
+    assert!(text.contains("the prior of `k`") || text.contains("`sigma`"), "{text}");
+}
+
 /// The text of such a problem is nobody's: what is wrong is shown at the call.
 #[test]
 fn what_is_wrong_with_a_problem_of_a_script_is_shown_at_the_call() {

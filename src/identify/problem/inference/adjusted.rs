@@ -8,6 +8,7 @@
 use super::{Constraint, PortableConstraint};
 use crate::diag::Fault;
 use crate::fitness::Law;
+use crate::problem::distributions::normal_below;
 use crate::problem::{
     ErrorModel, Failed, FailureKind, LIKELIHOOD, Portable, Problem, Role, Series, Sigma, Simulate,
     likelihood,
@@ -67,7 +68,7 @@ pub struct Prior {
     pub parameter: usize,
     /// Its distribution.
     pub distribution: Distribution,
-    /// What is added to -log L, as the density is one of another coordinate.
+    /// What is added to -log L, as the density is one of another coordinate, or truncated.
     pub constant: f64,
 }
 
@@ -113,6 +114,21 @@ impl Prior {
             Distribution::Laplace { .. } | Distribution::LogLaplace { .. } => Law::Laplace,
             _ => Law::Normal,
         }
+    }
+
+    /// The probability of values between two limits.
+    pub fn probability(&self, limits: [f64; 2]) -> f64 {
+        let Some((centre, scale)) = self.point() else { return 1.0 };
+        let [low, high] = limits.map(|limit| {
+            let own = if self.is_logarithmic() { elementary::ln(limit.max(0.0)) } else { limit };
+            let u = (own - centre) / scale;
+            match self.law() {
+                Law::Laplace if u < 0.0 => 0.5 * elementary::exp(u),
+                Law::Laplace => 1.0 - 0.5 * elementary::exp(-u),
+                _ => normal_below(u),
+            }
+        });
+        high - low
     }
 
     /// Centre and standard deviation.

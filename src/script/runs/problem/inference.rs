@@ -238,7 +238,6 @@ fn distribution(
         }
         _ => high - low,
     };
-    let has_limits = min.is_some() || max.is_some();
     let kind = numbers.distribution.as_deref().unwrap_or("normal");
     let (found, constant) = match (kind, [mean, sd, median, factor, scale]) {
         ("uniform", [None, None, None, None, None]) => {
@@ -247,21 +246,25 @@ fn distribution(
         ("loguniform", [None, None, None, None, None]) if low > 0.0 => {
             (Distribution::LogUniform, elementary::ln(elementary::ln(high / low)))
         }
-        ("normal", [Some(mean), Some(sd), None, None, None]) if !has_limits => {
+        ("normal", [Some(mean), Some(sd), None, None, None]) => {
             (Distribution::Normal { mean, sd }, 0.0)
         }
-        ("normal", [None, None, Some(median), Some(factor), None]) if !has_limits => {
+        ("normal", [None, None, Some(median), Some(factor), None]) => {
             (Distribution::LogNormal { median, factor }, 0.0)
         }
-        ("laplace", [None, None, Some(median), None, Some(scale)]) if !has_limits => {
+        ("laplace", [None, None, Some(median), None, Some(scale)]) => {
             (Distribution::Laplace { median, scale }, 0.0)
         }
-        ("laplace", [None, None, Some(median), Some(factor), None]) if !has_limits => {
+        ("laplace", [None, None, Some(median), Some(factor), None]) => {
             (Distribution::LogLaplace { median, factor }, 0.0)
         }
         _ => return Err(unreadable(name)),
     };
-    let prior = Prior { parameter: 0, distribution: found, constant };
+    let mut prior = Prior { parameter: 0, distribution: found, constant };
+    if prior.point().is_some() {
+        truncate(&mut prior, name, [min, max], range)?;
+    }
+    let constant = prior.constant;
     match numbers.base {
         Some(_) if !prior.is_logarithmic() => {
             bail!(BAD_OPTION, "the prior of `{name}` is not one of its logarithm, and has no base"; help: "remove `base`");
@@ -270,6 +273,27 @@ fn distribution(
         Some(base) => Ok((found, constant - elementary::ln(elementary::ln(base)))),
         None => Ok((found, constant)),
     }
+}
+
+/// Normalizes a density that is 0 beyond limits.
+fn truncate(
+    prior: &mut Prior,
+    name: &str,
+    limits: [Option<f64>; 2],
+    range: [f64; 2],
+) -> Result<(), Fault> {
+    let [low, high] = [limits[0].unwrap_or(f64::NEG_INFINITY), limits[1].unwrap_or(f64::INFINITY)];
+    if range[0] < low || range[1] > high {
+        bail!(BAD_OPTION, "the prior of `{name}` reaches from {low} to {high}, its search range from {} to {}", range[0], range[1]; help: "narrow `min` and `max` of the parameter");
+    }
+    if limits != [None, None] {
+        let probability = prior.probability([low, high]);
+        if probability.is_nan() || probability <= 0.0 {
+            bail!(BAD_OPTION, "the prior of `{name}` has no probability between {low} and {high}"; help: "widen its limits");
+        }
+        prior.constant += elementary::ln(probability);
+    }
+    Ok(())
 }
 
 fn unreadable(name: &str) -> Fault {

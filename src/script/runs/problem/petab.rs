@@ -81,14 +81,9 @@ fn check(file: &ProblemFile) -> Result<(), Diagnostic> {
         return Err(fault.help(help).at(at("model")));
     }
     for (name, own) in &file.parameters {
-        let what = if own.initial {
-            "an initial value that is estimated"
-        } else if own.per_experiment {
-            "a parameter with a value for each experiment"
-        } else {
-            continue;
-        };
-        return refuse(what, file.places.parameter(name));
+        if own.initial {
+            return refuse("an initial value that is estimated", file.places.parameter(name));
+        }
     }
     file.experiment.iter().try_for_each(check_experiment)
 }
@@ -163,16 +158,24 @@ struct Tables {
     experiments: Vec<[String; 3]>,
     measurements: Vec<[String; 5]>,
     has_priors: bool,
+    /// Parameters that the model gets, with a value for one experiment each.
+    added: Vec<String>,
 }
 
 impl Tables {
     fn of(file: &ProblemFile, series: &[&Series], starts: &[f64]) -> Result<Tables, Diagnostic> {
         let mut tables = Tables::default();
-        let mut tied = Vec::new();
+        let (mut tied, mut own_in_each) = (Vec::new(), Vec::new());
         for (name, entry) in &file.parameters {
             let place = file.places.parameter(name);
             match entry.role(name).at(place)? {
-                Role::Free { range, .. } => tables.free(name, entry, range).at(place)?,
+                Role::Free { range, .. } if entry.per_experiment => {
+                    own_in_each.push((name, entry, range));
+                }
+                Role::Free { range, .. } => {
+                    let id = tables.identifiers.of(name);
+                    tables.free(id, entry, range).at(place)?;
+                }
                 Role::Fixed(ValueEntry::Number(value)) => tables.fixed(name, value),
                 Role::Fixed(_) => {
                     return Err(unsayable("a value that is not a number").at(place));
@@ -182,7 +185,16 @@ impl Tables {
         }
         let mut all = series.iter();
         for (number, entry) in file.experiment.iter().enumerate() {
-            let id = tables.experiment(entry, number, (&tied, starts))?;
+            let id = id_of(entry, number);
+            let mut set = tied.clone();
+            for (name, parameter, range) in &own_in_each {
+                let own = format!("{}_in_{id}", tables.identifiers.of(name));
+                let place = file.places.parameter(name);
+                tables.free(own.clone(), parameter, *range).at(place)?;
+                tables.added.push(own.clone());
+                set.push(((*name).clone(), own));
+            }
+            tables.experiment(entry, &id, (set, starts.get(number).copied()))?;
             for (name, _) in entry.all_outputs() {
                 let Some(own) = all.next() else { continue };
                 let place = entry.places.at(&["outputs", name]);
@@ -195,7 +207,7 @@ impl Tables {
 
     fn free(
         &mut self,
-        name: &str,
+        id: String,
         entry: &ParameterEntry,
         [low, high]: [f64; 2],
     ) -> Result<(), Fault> {
@@ -204,7 +216,6 @@ impl Tables {
             Some(prior) => prior_of(prior, [low, high])?,
         };
         self.has_priors |= !kind.is_empty();
-        let id = self.identifiers.of(name);
         let is_wide = low > 0.0 && high / low > 10.0;
         let middle = if is_wide { (low * high).sqrt() } else { 0.5 * (low + high) };
         let [low, high, start] = [low, high, entry.start.unwrap_or(middle)].map(|v| v.to_string());
@@ -219,17 +230,13 @@ impl Tables {
         self.parameters.push([id, none(), none(), nominal, no, none(), none()]);
     }
 
-    /// An experiment with what it sets; its identifier.
+    /// An experiment with what it sets: what parameters are there, and its own.
     fn experiment(
         &mut self,
         entry: &ExperimentEntry,
-        number: usize,
-        (tied, starts): (&[(String, String)], &[f64]),
-    ) -> Result<String, Diagnostic> {
-        let label = entry.label(number);
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-        let id = format!("e{}_{}", number + 1, label.chars().map(plain).collect::<String>());
-        let mut targets: Vec<(String, String)> = tied.to_vec();
+        id: &str,
+        (mut targets, start): (Vec<(String, String)>, Option<f64>),
+    ) -> Result<(), Diagnostic> {
         for (name, value) in &entry.set.values {
             let value = match value {
                 ValueEntry::Number(value) => value.to_string(),
@@ -247,9 +254,8 @@ impl Tables {
             let target = self.identifiers.of(&name);
             self.conditions.push([condition.clone(), target, value]);
         }
-        let start = starts.get(number).copied().unwrap_or(0.0);
-        self.experiments.push([id.clone(), start.to_string(), condition]);
-        Ok(id)
+        self.experiments.push([id.to_owned(), start.unwrap_or(0.0).to_string(), condition]);
+        Ok(())
     }
 
     fn series(&mut self, own: &Series, name: &str, experiment: &str) -> Result<(), Fault> {
@@ -318,8 +324,24 @@ impl Tables {
         }
     }
 
+    /// The class that has the parameters of single experiments as well, and the text with it.
+    fn extended(&self, class: &str, mut model: String) -> (String, String) {
+        if self.added.is_empty() {
+            return (class.to_owned(), model);
+        }
+        let own = format!("{class}_in_experiments");
+        // Writing into a String cannot fail.
+        _ = writeln!(model, "\nmodel {own}\n  extends {class};");
+        for name in &self.added {
+            _ = writeln!(model, "  parameter Real {name} = 1;");
+        }
+        _ = writeln!(model, "end {own};");
+        (own, model)
+    }
+
     /// The files, the YAML file first.
     fn files(self, class: &str, model: String) -> Vec<(String, String)> {
+        let (class, model) = self.extended(class, model);
         let heading = ["parameterId", "lowerBound", "upperBound", "nominalValue", "estimate"];
         let priors = ["priorDistribution", "priorParameters"];
         let n = if self.has_priors { 7 } else { 5 };
@@ -378,6 +400,12 @@ impl Tables {
     }
 }
 
+/// The identifier of an experiment.
+fn id_of(entry: &ExperimentEntry, number: usize) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    format!("e{}_{}", number + 1, entry.label(number).chars().map(plain).collect::<String>())
+}
+
 /// The parameter for the deviation of a series that is estimated.
 fn deviation_id(own: &Series) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
@@ -394,15 +422,15 @@ fn prior_of(prior: &PriorEntry, range: [f64; 2]) -> Result<[String; 2], Fault> {
         PriorEntry::Name(_) => return Err(unsayable("a prior of the logarithm")),
         PriorEntry::Numbers(own) => {
             let kind = own.distribution.as_deref().unwrap_or("normal");
-            match (kind, own.mean, own.sd, own.median, own.scale, own.min, own.max) {
-                ("normal", Some(mean), Some(sd), None, None, None, None) => {
-                    ["normal", &pair(mean, sd)]
+            let limits = [own.min.unwrap_or(range[0]), own.max.unwrap_or(range[1])];
+            match (kind, own.mean, own.sd, own.median, own.scale) {
+                ("uniform", None, None, None, None) => ["uniform", &pair(limits[0], limits[1])],
+                _ if limits != range => {
+                    return Err(unsayable("a prior that ends outside of the search range"));
                 }
-                ("laplace", None, None, Some(median), Some(scale), None, None) => {
+                ("normal", Some(mean), Some(sd), None, None) => ["normal", &pair(mean, sd)],
+                ("laplace", None, None, Some(median), Some(scale)) => {
                     ["laplace", &pair(median, scale)]
-                }
-                ("uniform", None, None, None, None, min, max) => {
-                    ["uniform", &pair(min.unwrap_or(range[0]), max.unwrap_or(range[1]))]
                 }
                 _ => return Err(unsayable("a prior of the logarithm")),
             }

@@ -5,7 +5,7 @@ use super::noise_test::PREDICTION_STEPS;
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::operators::KINDS;
-use crate::registry::BAD_OPTION;
+use crate::registry::{BAD_OPTION, Choice};
 use crate::value::{ArrayValue, Elements, FromValue, RecordValue, Value};
 use toml::{Table, Value as Entry};
 
@@ -101,9 +101,27 @@ fn parameter(fields: &Fields<'_>) -> Result<Table, Fault> {
     }
     put_text(&mut entry, "scale", fields.text("scale")?);
     put_text(&mut entry, "unit", fields.text("unit")?);
+    if let Some(prior) = prior(&fields.text("prior")?)? {
+        put(&mut entry, "prior", prior);
+    }
     put(&mut entry, "initial", fields.get::<bool>("initialValue")?);
     put(&mut entry, "per_experiment", fields.get::<bool>("perExperiment")?);
     Ok(entry)
+}
+
+/// A distribution with its numbers, or a name alone; nothing for an empty string.
+fn prior(text: &str) -> Result<Option<Entry>, Fault> {
+    let Choice { name, options, .. } = Choice::parse(text)?;
+    if name.is_empty() {
+        return Ok(None);
+    }
+    let mut prior: Table =
+        options.numbers().map(|(name, value)| (name.to_owned(), Entry::from(value))).collect();
+    if prior.is_empty() {
+        return Ok(Some(Entry::from(name)));
+    }
+    put(&mut prior, "distribution", name);
+    Ok(Some(Entry::Table(prior)))
 }
 
 fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
@@ -154,23 +172,25 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
 /// The outputs of an experiment; a sigma of 0 is not known.
 fn outputs(fields: &Fields<'_>) -> Result<Table, Fault> {
     let names: Vec<String> = fields.get("outputs")?;
-    let columns: Vec<String> = fields.get("columns")?;
-    let weights: Vec<f64> = fields.get("weights")?;
-    same_size("outputs", names.len(), "columns", columns.len())?;
-    same_size("outputs", names.len(), "weights", weights.len())?;
-    let mut sigmas: Vec<f64> = fields.get("sigmas")?;
-    if sigmas.is_empty() {
-        sigmas.resize(names.len(), 0.0);
-    }
-    same_size("outputs", names.len(), "sigmas", sigmas.len())?;
+    let columns: Vec<String> = fields.of_outputs("columns", &names)?;
+    let weights: Vec<f64> = fields.of_outputs("weights", &names)?;
+    let sigmas: Vec<f64> = fields.of_outputs("sigmas", &names)?;
+    let deviations: Vec<String> = fields.of_outputs("deviations", &names)?;
+    let errors: Vec<String> = fields.of_outputs("errors", &names)?;
+    let degrees: Vec<f64> = fields.of_outputs("degreesOfFreedom", &names)?;
     let mut outputs = Table::new();
-    let columns = columns.into_iter().zip(weights.into_iter().zip(sigmas));
-    for (name, (column, (weight, sigma))) in names.into_iter().zip(columns) {
+    for (k, name) in names.iter().enumerate() {
         let mut output = Table::new();
-        put(&mut output, "column", column);
-        put(&mut output, "weight", weight);
-        put_number(&mut output, "sigma", sigma);
-        put(&mut outputs, &name, output);
+        if sigmas[k] != 0.0 && !deviations[k].is_empty() {
+            bail!(BAD_OPTION, "`{name}` has a number in `sigmas` and a string in `deviations`"; help: "give one of them");
+        }
+        put(&mut output, "column", columns[k].as_str());
+        put(&mut output, "weight", weights[k]);
+        put_number(&mut output, "sigma", sigmas[k]);
+        put_text(&mut output, "sigma", deviations[k].clone());
+        put_text(&mut output, "error", errors[k].clone());
+        put_number(&mut output, "degrees_of_freedom", degrees[k]);
+        put(&mut outputs, name, output);
     }
     Ok(outputs)
 }
@@ -225,6 +245,22 @@ impl Fields<'_> {
             }
         }
         Ok(())
+    }
+
+    /// A vector with an element for each of the outputs; without any, those that say nothing.
+    fn of_outputs<T: FromValue + Clone + Default>(
+        &self,
+        name: &str,
+        outputs: &[String],
+    ) -> Result<Vec<T>, Fault>
+    where
+        Vec<T>: FromValue,
+    {
+        let values: Vec<T> = self.get(name)?;
+        match values.is_empty() {
+            true => Ok(vec![T::default(); outputs.len()]),
+            false => same_size("outputs", outputs.len(), name, values.len()).map(|()| values),
+        }
     }
 
     fn pairs(&self, names: &str, values: &str) -> Result<Table, Fault> {

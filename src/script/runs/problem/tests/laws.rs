@@ -107,6 +107,27 @@ fn laplace_priors_hold_parameters_at_their_centre() {
     assert!((own - 1.0).abs() < 1e-3, "{}", found.text());
 }
 
+/// A density that ends at limits has the integral 1 between them: `scipy.stats.truncnorm` and the
+/// distribution of Laplace.
+#[test]
+fn truncated_priors_are_normalized() {
+    for (prior, probability) in [
+        ("mean = 1, sd = 2", 0.999_968_328_758_167 - 0.326_355_220_287_919_8),
+        (
+            "distribution = \"laplace\", median = 1, scale = 2",
+            1.0 - 0.5 * (-4.0_f64).exp() - 0.5 * (-0.45_f64).exp(),
+        ),
+    ] {
+        let of = |limits: &str| {
+            let parameter = format!(", prior = {{ {prior}{limits} }} }}");
+            let found = fitted(&parameter, "sigma = 1", &MEASURED);
+            found.likelihood.negative_log_likelihood.unwrap()
+        };
+        let difference = of(", min = 0.1, max = 9") - of("");
+        assert!((difference - probability.ln()).abs() < 1e-6, "{difference} {probability}");
+    }
+}
+
 /// `scipy.stats.norm` with logcdf for two values below 1.5 and logsf for one above 4.
 #[test]
 fn values_beyond_limits_have_the_probability_of_that() {
