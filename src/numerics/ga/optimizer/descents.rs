@@ -57,12 +57,14 @@ pub struct Pool {
     shares: Vec<usize>,
     required: Required,
     accuracy: Accuracy,
+    /// How far a short step may move each gene.
+    reach: Vec<f64>,
     /// Descents and the smallest sum of squares at the begin of each round.
     rounds: Vec<(usize, f64)>,
 }
 
 impl Pool {
-    pub fn new(accuracy: Accuracy) -> Pool {
+    pub fn new(accuracy: Accuracy, reach: Vec<f64>) -> Pool {
         Pool {
             descents: Vec::new(),
             joined: Vec::new(),
@@ -71,14 +73,15 @@ impl Pool {
             shares: Vec::new(),
             required: Required::Jacobians,
             accuracy,
+            reach,
             rounds: Vec::new(),
         }
     }
 
     /// Begins a round: descends from these starts, continues with the best of the descents whose
     /// steps were used up, and refines the best minimum. The first `independent` starts owe
-    /// nothing to earlier descents.
-    pub fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
+    /// nothing to earlier descents; descents from the last `short` ones have short steps.
+    pub fn begin(&mut self, starts: Vec<Vec<f64>>, [independent, short]: [usize; 2]) {
         self.active.clear();
         self.rounds.push((self.descents.len(), self.smallest()));
         let open = |k: &usize| !self.descents[*k].has_ended();
@@ -87,13 +90,22 @@ impl Pool {
             self.active.push(open);
         }
         self.refine();
+        let first_short = starts.len() - short;
         for (number, start) in starts.into_iter().enumerate() {
-            self.active.push(self.descents.len());
-            self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
+            let is_short = number >= first_short;
+            let place = self.descents.len();
+            self.active.push(place);
+            let own = Descent::new(start, self.accuracy, STEPS, COARSE);
+            self.descents.push(if is_short { own.within(&self.reach) } else { own });
             self.joined.push(None);
             self.independent.push(number < independent);
         }
         self.shares = vec![0; self.active.len()];
+    }
+
+    /// Whether short steps are shorter than a range.
+    pub fn has_short_steps(&self) -> bool {
+        self.reach.iter().any(|reach| *reach < 1.0)
     }
 
     /// Continues with the best descent where it can come nearer to its minimum.
@@ -162,7 +174,7 @@ impl Pool {
 
     /// Forgets everything, as the ranges have changed.
     pub fn clear(&mut self) {
-        *self = Pool::new(self.accuracy);
+        *self = Pool::new(self.accuracy, std::mem::take(&mut self.reach));
     }
 
     /// The descent with the smallest sum of squares.

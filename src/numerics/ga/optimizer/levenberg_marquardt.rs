@@ -9,7 +9,9 @@
 //! [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §10.3.
 
 use super::linear_model::{LinearModel, Offset, Step};
-use super::{Answers, DescentEnd, DescentReport, ERRORS, Method, Optimizer, Required, Setup};
+use super::{
+    Answers, DescentEnd, DescentReport, ERRORS, Method, Optimizer, Required, Scale, Setup,
+};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Genomes;
@@ -57,6 +59,19 @@ const PROBE: f64 = 0.1;
 const TRUSTED: f64 = 0.75;
 /// Steps that fell short of the prediction before curvature is probed.
 const CURVED: u32 = 2;
+
+/// A short step changes a gene on a logarithmic scale by at most this factor.
+const FACTOR: f64 = 100.0;
+
+/// How far a short step may move each gene, as a part of its range.
+pub(crate) fn reach(scales: &[Scale]) -> Vec<f64> {
+    let one = |scale: &Scale| match scale.logarithmic {
+        // Of a range of negative numbers, the quotient is below 1.
+        true => elementary::ln(FACTOR) / elementary::ln(scale.max / scale.min).abs(),
+        false => 1.0,
+    };
+    scales.iter().map(one).collect()
+}
 
 struct LevenbergMarquardt {
     steps: usize,
@@ -122,6 +137,8 @@ pub struct Descent {
     jacobian: Vec<f64>,
     model: Option<LinearModel>,
     scales: Vec<f64>,
+    /// How far a step may move each gene.
+    reach: Vec<f64>,
     accuracy: Accuracy,
     radius: f64,
     step: Option<Step>,
@@ -144,6 +161,7 @@ impl Descent {
             x: start.clone(),
             trial: start.clone(),
             scales: vec![0.0; start.len()],
+            reach: vec![1.0; start.len()],
             start,
             sum: f64::INFINITY,
             residuals: Vec::new(),
@@ -160,6 +178,12 @@ impl Descent {
             goal,
             end: None,
         }
+    }
+
+    /// The same with steps that move each gene by at most this.
+    pub(crate) fn within(mut self, reach: &[f64]) -> Descent {
+        self.reach.iter_mut().zip(reach).for_each(|(own, reach)| *own = *reach);
+        self
     }
 
     /// Whether it has ended by itself.
@@ -306,7 +330,8 @@ impl Descent {
 
     /// The next step; ends where none exceeds rounding errors.
     fn propose(&mut self) {
-        let step = self.model.as_ref().and_then(|m| m.step(&self.x, &self.scales, self.radius));
+        let limits = (&self.scales[..], &self.reach[..]);
+        let step = self.model.as_ref().and_then(|m| m.step(&self.x, limits, self.radius));
         let Some(step) = step else { return self.finish(DescentEnd::NoDescent) };
         let moves = step.by.iter().zip(&self.x).any(|(by, x)| by.abs() > 1e-15 * x.max(1e-3));
         if !moves || step.reduction <= ROUNDING * ROUNDING * self.sum {
@@ -480,5 +505,24 @@ impl Optimizer for Descent {
 
     fn descents(&self) -> Vec<DescentReport> {
         vec![self.report()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_reach_a_factor_of_100_on_logarithmic_scales() {
+        let scale = |min, max, logarithmic| Scale { min, max, logarithmic, unit: String::new() };
+        let all = [
+            scale(1e-5, 1e3, true),
+            scale(-1e3, -1e-5, true),
+            scale(1.0, 10.0, true),
+            scale(1e-5, 1e3, false),
+        ];
+        let found = reach(&all);
+        assert!((found[0] - 0.25).abs() < 1e-12 && (found[1] - 0.25).abs() < 1e-12, "{found:?}");
+        assert!(found[2] > 1.0 && found[3] == 1.0, "{found:?}");
     }
 }

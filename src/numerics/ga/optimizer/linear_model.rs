@@ -118,16 +118,16 @@ impl LinearModel {
         (0..x.len()).filter(|&j| self.norms[j] > 0.0 && !held(j)).collect()
     }
 
-    /// The step from `x` of at most `radius` in the scales, within the unit cube; `None` where no
-    /// gene can move.
-    pub fn step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
-        let projected = self.projected_step(x, scales, radius)?;
+    /// The step from `x` of at most `radius` in the scales and of at most `reach` in each gene, within the
+    /// unit cube; `None` where no gene can move.
+    pub fn step(&self, x: &[f64], (scales, reach): (&[f64], &[f64]), radius: f64) -> Option<Step> {
+        let projected = self.projected_step(x, (scales, reach), radius)?;
         if projected.free.len() == self.free(x).len() {
             return Some(projected);
         }
         // Genes put on their limits may spoil more than the others make good; the sum of squares
         // always falls along the way to the step without limits.
-        let shortened = self.shortened_step(x, scales, radius);
+        let shortened = self.shortened_step(x, (scales, reach), radius);
         Some(match shortened {
             Some(shortened) if shortened.reduction > projected.reduction => shortened,
             _ => projected,
@@ -135,7 +135,12 @@ impl LinearModel {
     }
 
     /// Genes that would leave the cube are put on their limits one set after the other.
-    fn projected_step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
+    fn projected_step(
+        &self,
+        x: &[f64],
+        (scales, reach): (&[f64], &[f64]),
+        radius: f64,
+    ) -> Option<Step> {
         let mut free = self.free(x);
         let mut by = DVector::zeros(x.len());
         let mut damping = 0.0;
@@ -149,7 +154,7 @@ impl LinearModel {
             let mut blocked = Vec::new();
             for (column, &j) in free.iter().enumerate() {
                 let step = own[column] / scales[j];
-                let limit = limit(x[j], step);
+                let limit = limit(x[j], step, reach[j]);
                 if step.abs() > limit.abs() {
                     blocked.push(j);
                     by[j] = limit;
@@ -168,7 +173,12 @@ impl LinearModel {
 
     /// The step without limits as far as the first limit; genes that cannot move at all are left
     /// out.
-    fn shortened_step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
+    fn shortened_step(
+        &self,
+        x: &[f64],
+        (scales, reach): (&[f64], &[f64]),
+        radius: f64,
+    ) -> Option<Step> {
         let mut free = self.free(x);
         while !free.is_empty() {
             let decomposition = self.decompose(&free, scales)?;
@@ -178,13 +188,13 @@ impl LinearModel {
             for (column, &j) in free.iter().enumerate() {
                 by[j] = own[column] / scales[j];
                 if by[j] != 0.0 {
-                    part = part.min(limit(x[j], by[j]) / by[j]);
+                    part = part.min(limit(x[j], by[j], reach[j]) / by[j]);
                 }
             }
             if part > 0.0 {
                 return Some(self.step_by(&(by * part), scales, damping, free));
             }
-            free.retain(|&j| by[j] == 0.0 || limit(x[j], by[j]) != 0.0);
+            free.retain(|&j| by[j] == 0.0 || limit(x[j], by[j], reach[j]) != 0.0);
         }
         None
     }
@@ -305,8 +315,24 @@ fn damped(
 }
 
 /// The longest step of a gene at `x` in the direction of `step`.
-fn limit(x: f64, step: f64) -> f64 {
+fn limit(x: f64, step: f64, reach: f64) -> f64 {
     let room = if step > 0.0 { 1.0 - x } else { x };
-    let reach = if room <= AT { room } else { TOWARDS_BOUND * room };
-    reach.max(0.0).copysign(step)
+    let own = if room <= AT { room } else { TOWARDS_BOUND * room };
+    own.min(reach).max(0.0).copysign(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a gene that the residuals hardly depend on, the scale allows a step across its range.
+    #[test]
+    fn no_gene_moves_farther_than_its_reach() {
+        let model = LinearModel::new(&[1.0, 1.0], &[10.0, 0.0, 0.0, 1e-3], 2, 1e-9);
+        let scales = [10.0, 1e-3];
+        let far = model.step(&[0.5, 0.5], (&scales, &[1.0, 1.0]), 5.0).unwrap();
+        let near = model.step(&[0.5, 0.5], (&scales, &[1.0, 0.2]), 5.0).unwrap();
+        assert!(far.by[1] < -0.4, "{:?}", far.by);
+        assert!((near.by[1] + 0.2).abs() < 1e-12 && near.by[0] < -0.05, "{:?}", near.by);
+    }
 }
