@@ -217,7 +217,7 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
         let fault = fault!(
             BAD_OPTION,
             "the sigma of `{name}` cannot be estimated from {} point{}", values.len(), if values.len() == 1 { "" } else { "s" };
-            help: "give it as a number"
+            help: "give it as a number; values beyond a limit do not count"
         );
         return Err(((*name).to_owned(), fault));
     }

@@ -2,9 +2,10 @@
 
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{Diagnostic, Fault};
+use crate::models::exported;
 use crate::models::linear::{Linear, Number, frequencies, responding};
 use crate::models::linearization::linearized;
-use crate::models::simulation::{self, SimulationOptions};
+use crate::models::simulation::SimulationOptions;
 use crate::name::{Ident, Name};
 use crate::plot::{self, Axis, Figure, Mark, Picture, Series};
 use crate::registry::BAD_OPTION;
@@ -101,7 +102,7 @@ fn linear_model(
         Some(Value::Real(time)) => options.stop = Some(time),
         _ => {}
     }
-    simulation::translate(session, model)?;
+    exported::translate(session, model)?;
     Ok(linearized(session, &options, outputs)?)
 }
 

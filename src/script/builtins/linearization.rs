@@ -7,6 +7,7 @@ use super::simulation::{Request, is_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::flatten::Experiment;
+use crate::models::exported::with_inputs_to_come;
 use crate::models::linear::Linear;
 use crate::models::linearization::linearized;
 use crate::models::simulation;
@@ -125,7 +126,8 @@ fn translated_and_linearized(
     flags: &str,
     file: &str,
 ) -> Result<SimulationOptions, Vec<Diagnostic>> {
-    let model = simulation::translate(session, &class.to_string())?;
+    let name = class.to_string();
+    let model = with_inputs_to_come(session, |session| simulation::translate(session, &name))?;
     let at = session.call_site();
     let flags = SimulationFlags::parse(flags).at(at).map_err(|error| vec![error])?;
     let options = flags.applied_to(completed(options, &model.program.experiment()));

@@ -68,10 +68,16 @@ struct MadeInput {
 /// # Errors
 /// What is wrong with the model.
 pub fn translate(session: &mut Session, problem: &str) -> Result<(), Vec<Diagnostic>> {
-    session.models.inputs_come_later = true;
-    let translated = simulation::translate(session, problem);
-    session.models.inputs_come_later = false;
-    translated.map(|_| ())
+    with_inputs_to_come(session, |session| simulation::translate(session, problem)).map(|_| ())
+}
+
+/// Does something for which it is no matter that inputs have no data: they are given values later, or
+/// deviations.
+pub fn with_inputs_to_come<T>(session: &mut Session, act: impl FnOnce(&mut Session) -> T) -> T {
+    let before = std::mem::replace(&mut session.models.inputs_come_later, true);
+    let done = act(session);
+    session.models.inputs_come_later = before;
+    done
 }
 
 /// The unit of a model, as scripts have changed it.

@@ -9,6 +9,7 @@
 //! The continuous inputs u at the top level are states that do not change, each the first of a chain with its
 //! derivatives ([`input_chain`]).
 
+use super::exported::with_inputs_to_come;
 use super::input_chain;
 use super::linear::Linear;
 use super::simulation::{self, SimulationOptions, Translated};
@@ -37,7 +38,8 @@ pub fn linearized(
     outputs: &[String],
 ) -> Result<Linear, Vec<Diagnostic>> {
     let before = session.current_values();
-    let linear = linearized_variant(session, options, outputs);
+    let linear =
+        with_inputs_to_come(session, |session| linearized_variant(session, options, outputs));
     session.restore_values(before);
     linear
 }

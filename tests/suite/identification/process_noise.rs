@@ -144,14 +144,16 @@ fn what_a_filter_cannot_do_is_refused_with_its_place() {
         let problem = change(room_problem("0.1", ", sigma = 0.1"));
         refused(&[("M.mo", ROOM), ("d.csv", &data), ("p.toml", &problem)])
     };
-    let cases: [(&str, &str, &str); 7] = [
+    let cases: [(&str, &str, &str); 9] = [
         ("w = 0.1", "W = 0.1", "did you mean `w`?"),
         ("w = 0.1", "u = 0.1", "`u` is not a state"),
         ("w = 0.1", "w = -1", "the noise of `w` is -1"),
         ("w = 0.1", "w = { min = 1 }", "must have either `min` and `max`, or `value`"),
         ("sigma = 0.1", "sigma = \"0.1 + abs(T)\", weight = 2", "a `weight`"),
         ("sigma = 0.1", "sigma = 0.1, error = \"lognormal\"", "another `error`"),
-        ("sigma = 0.1", "sigma = 0.1, delay = 1", "keep a past that is uncertain"),
+        ("sigma = 0.1", "sigma = 0.1, delay = 1", "a `delay`, and a filter keeps no past"),
+        ("sigma = 0.1", "sigma = 0.1, below = 0.5", "the limit `below`"),
+        ("sigma = 0.1", "sigma = 0.1, above = \"u\"", "the limit `above`"),
     ];
     // The column of the times has another name, and the problem does not say which.
     let files = [

@@ -461,3 +461,27 @@ fn magnitude_and_phase_have_the_bands_of_both_parts() {
         assert!(text.contains("95 % confidence band"), "{name}");
     }
 }
+
+/// The standard deviation of a measurement is in proportion to |Z|, which is not measured beyond the data.
+#[test]
+fn what_varies_over_frequency_is_predicted_within_the_data_alone() {
+    let model = "model M input Real i; output Real v; parameter Real R = 0.1; parameter Real L = 0.1; \
+        equation v = R*i + L*der(i); end M;";
+    let (at, mut data) = (frequencies(0.01, 1.0, 12), "f,re,im\n".to_owned());
+    for (k, f) in at.iter().enumerate() {
+        let error = if k % 2 == 0 { 1.01 } else { 0.99 };
+        writeln!(data, "{f:.17e},{:.17e},{:.17e}", 0.1 * error, TAU * f * 0.05 / error).unwrap();
+    }
+    let entry = "spectrum = { input = \"i\", output = \"v\", weighting = \"modulus\" }";
+    let problem = problem("M", &[("R", 0.1), ("L", 0.1)], entry);
+    let (result, _) = solved(&[("M.mo", model), ("d.csv", &data), ("p.toml", &problem)]);
+    let points = result["inferred"]["bands"][0]["points"].as_array().unwrap();
+    let (mut within, mut beyond) = (0, 0);
+    for own in points {
+        let is_within = (0.01..=1.0).contains(&own["x"].as_f64().unwrap());
+        assert_eq!(own["prediction"].is_number(), is_within, "{own}");
+        assert!(own["confidence"].is_number(), "{own}");
+        *(if is_within { &mut within } else { &mut beyond }) += 1;
+    }
+    assert!(within > 50 && beyond > 5, "{within} {beyond}");
+}

@@ -43,8 +43,8 @@ pub struct BandPoint {
     pub y: f64,
     /// Half-width of the confidence band; `None` where the data leave the curve open.
     pub confidence: Option<f64>,
-    /// Half-width of the prediction band; `None` also for variables that were not measured, and
-    /// where the loss is robust.
+    /// Half-width of the prediction band; `None` also for variables that were not measured, where the
+    /// loss is robust, and beyond the measured points whose standard deviations differ.
     pub prediction: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ pub fn bands(
             let variance = local.information.variance_of(&linear.gradients[place + k]);
             let half = |variance: f64| local.quantile * variance.sqrt();
             let noise = curve.series.filter(|_| !local.robust);
-            let noise = noise.map(|series| local.noise_at(problem, series, *x));
+            let noise = noise.and_then(|series| local.known_noise_at(problem, series, *x));
             let both = variance.zip(noise).map(|(variance, noise)| variance + noise * noise);
             BandPoint {
                 x: *x,

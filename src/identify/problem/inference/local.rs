@@ -148,6 +148,16 @@ impl Local {
         let scale = nearest.map_or(1.0, |(k, _)| self.scales[first + k]);
         self.variance.sqrt() / scale
     }
+
+    /// The same where it is known: beyond the measured points only if it is the same at all of them.
+    pub(crate) fn known_noise_at(&self, problem: &Problem, series: usize, x: f64) -> Option<f64> {
+        let first: usize = problem.series[..series].iter().map(|series| series.x.len()).sum();
+        let own = &problem.series[series].x;
+        let is_within = own.iter().any(|known| *known <= x) && own.iter().any(|known| *known >= x);
+        let scales = &self.scales[first..first + own.len()];
+        let is_constant = scales.iter().all(|scale| *scale == scales[0]);
+        (is_within || is_constant).then(|| self.noise_at(problem, series, x))
+    }
 }
 
 /// How far the Gauss-Newton step would move the weighted points, root mean square over the

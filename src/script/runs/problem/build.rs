@@ -396,8 +396,11 @@ fn experiments(
         }
     }
     if all.fitted.is_empty() {
-        return Err(one(fault!(BAD_OPTION, "there is no experiment to fit")
-            .help("add a table `[[experiment]]`")));
+        let (what, remedy) = match all.validation.is_empty() {
+            true => ("there is no experiment to fit", "add a table `[[experiment]]`"),
+            false => ("all experiments are for validation", "remove `validation` from one of them"),
+        };
+        return Err(one(fault!(BAD_OPTION, "{what}").help(remedy)));
     }
     Ok(all)
 }

@@ -86,6 +86,8 @@ pub fn estimate(
     let source = session.sources.add(path.display().to_string(), text.as_str());
     let mut file = file::read(source, &text)
         .map_err(|error| vec![refusal::with_unread_columns(session, path, &text, error)])?;
+    // Nothing is fitted: an experiment for validation is one like the others.
+    file.experiment.iter_mut().for_each(|own| own.validation = false);
     if file.noise.is_empty() {
         return Err(one(fault!(BAD_OPTION, "`{}` has no process noise", path.display()).help(
             "say on which states noise acts: `[noise]` with `T = 1e-3`; without it, simulate",

@@ -18,6 +18,7 @@ use crate::flatten::{self, FlatModel};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
 use crate::mat::{Column, MatFile};
+use crate::models::exported::with_inputs_to_come;
 use crate::models::filter::UncertainStates;
 use crate::models::imported::CO_SIMULATION;
 use crate::models::simulation::{self, SimulationOptions};
@@ -491,10 +492,8 @@ fn types_of(
 
 /// A model whose inputs will follow data or oscillate: that they have none is not said.
 fn without_data(session: &mut Session, class: &str) -> Result<Arc<Program>, Vec<Diagnostic>> {
-    let before = std::mem::replace(&mut session.models.inputs_come_later, true);
-    let plain = simulation::translated(session, class);
-    session.models.inputs_come_later = before;
-    Ok(plain?.program.clone())
+    let plain = with_inputs_to_come(session, |session| simulation::translated(session, class))?;
+    Ok(plain.program.clone())
 }
 
 /// The relative error of values that are simulated so. Exact steps have none whatever the tolerance is:

@@ -191,6 +191,21 @@ fn check(own: &Series, name: &str, column: &ColumnEntry) -> Result<(), Fault> {
         )
         .help("remove it; `sigma` says how large the errors are"));
     }
+    if column.below.is_some() || column.above.is_some() {
+        let limit = if column.below.is_some() { "below" } else { "above" };
+        return Err(fault!(
+            BAD_OPTION,
+            "`{name}` has the limit `{limit}`, and a filter takes each value as a measurement"
+        )
+        .help("leave the cells beyond the limit empty, and remove it"));
+    }
+    if column.delay.is_some() {
+        return Err(fault!(
+            BAD_OPTION,
+            "`{name}` is measured with a `delay`, and a filter keeps no past"
+        )
+        .help("subtract a known delay from the times of its column, in a separate file"));
+    }
     if matches!(own.sigma, Sigma::Formula(_)) {
         return Err(fault!(
             BAD_OPTION,
