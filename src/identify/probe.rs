@@ -172,7 +172,10 @@ impl Ending<'_> {
             seed: self.recorder.seed().unwrap_or(NO_SEED),
             noise: self.noise,
             inference: Inference {
-                predict: Some(Box::new(ModelPredictions { experiments: experiments.clone() })),
+                predict: Some(Box::new(ModelPredictions {
+                    experiments: experiments.clone(),
+                    proposed: Vec::new(),
+                })),
                 bands: true,
                 ..Inference::default()
             },

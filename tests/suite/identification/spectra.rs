@@ -485,3 +485,50 @@ fn what_varies_over_frequency_is_predicted_within_the_data_alone() {
     }
     assert!(within > 50 && beyond > 5, "{within} {beyond}");
 }
+
+/// Z = R + s g L, measured at g = 1: where g = 10, an imaginary part says ten times as much of L.
+#[test]
+fn the_next_spectrum_may_be_at_another_operating_point() {
+    let model = "model M input Real i; output Real v; parameter Real R = 0.1; parameter Real L = 0.1; \
+        parameter Real g = 1; equation v = R*i + g*L*der(i); end M;";
+    let (at, mut data) = (frequencies(0.01, 1.0, 12), "f,re,im\n".to_owned());
+    for (k, f) in at.iter().enumerate() {
+        let error = if k % 2 == 0 { 0.004 } else { -0.004 };
+        writeln!(data, "{f:.17e},{:.17e},{:.17e}", 0.1 + error, TAU * f * 0.05 - error).unwrap();
+    }
+    let plain =
+        problem("M", &[("R", 0.1), ("L", 0.1)], "spectrum = { input = \"i\", output = \"v\" }")
+            .replace("\"re\"", "{ column = \"re\", sigma = 0.004 }")
+            .replace("\"im\"", "{ column = \"im\", sigma = 0.004 }");
+    let with = |points: &str| {
+        let problem = format!("{plain}\n[design]\npoints = 3\noperating_points = [{points}]\n");
+        [("M.mo", model.to_owned()), ("d.csv", data.clone()), ("p.toml", problem)]
+    };
+    let files = with("{ set = { g = 10 } }");
+    let (result, _) = solved(&files.each_ref().map(|(name, text)| (*name, text.as_str())));
+    let next = &result["inferred"]["next_measurement"];
+    let proposals = next["proposals"].as_array().unwrap();
+    let own = proposals.iter().find(|own| own["parameter"] == 1).unwrap();
+    let plan = &own["plans"][0];
+    assert_eq!(plan["experiment"], "experiment 1, g = 10", "{own}");
+    let range = [0, 1].map(|end| plan["range"][end].as_f64().unwrap());
+    let informative = |f: f64, g: f64| (TAU * f * g / 0.004).powi(2);
+    let present: f64 = at.iter().map(|f| informative(*f, 1.0)).sum();
+    let more: f64 = frequencies(range[0], range[1], 3).iter().map(|f| informative(*f, 10.0)).sum();
+    let [l, _] = parameter(&result, "L");
+    let half = |information: f64| 1.959963984540054 / information.sqrt() / l;
+    assert_near(next["now"][1].as_f64().unwrap(), half(present), 1e-6);
+    assert_near(own["after"][1].as_f64().unwrap(), half(present + more), 1e-6);
+
+    for (points, expected) in [
+        ("{ set = { G = 10 } }", "did you mean `g`?"),
+        ("{ set = { L = 10 } }", "set both in experiment 1, L = 10"),
+        ("{}", "neither `at` nor `set`"),
+        ("{ at = -1 }", "operating point"),
+        ("{ time = 1 }", "the entries here are `at`, `set`"),
+    ] {
+        let files = with(points);
+        let error = refused(&files.each_ref().map(|(name, text)| (*name, text.as_str())));
+        assert!(error.contains(expected) && error.contains("p.toml:"), "{points}: {error}");
+    }
+}

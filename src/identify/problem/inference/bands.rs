@@ -66,7 +66,8 @@ pub fn bands(
     refusals: &mut Vec<String>,
 ) -> Result<(Vec<Band>, Vec<SpectrumBand>), Fault> {
     let variables = &problem.inference.band_variables;
-    let request = CurveRequest { variables, reach: Reach::Measured, points: POINTS };
+    let request =
+        CurveRequest { variables, reach: Reach::Measured, points: POINTS, proposes: false };
     let (curves, linear) = linear(problem, predict, &local.values, &request)?;
     refusals.extend(curves.refusals);
     let linear = match linear {

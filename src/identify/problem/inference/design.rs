@@ -118,7 +118,7 @@ pub fn next_measurement(
     let Some(predict) = &problem.inference.predict else { return Ok(None) };
     let variables: Vec<String> = settings.outputs.iter().map(|(name, _)| name.clone()).collect();
     let reach = settings.range.map_or(Reach::Simulated, Reach::Range);
-    let request = CurveRequest { variables: &variables, reach, points: GRID };
+    let request = CurveRequest { variables: &variables, reach, points: GRID, proposes: true };
     let (curves, linear) = linear(problem, predict.as_ref(), &local.values, &request)?;
     let linear = match linear {
         Ok(linear) if !curves.curves.is_empty() => linear,
@@ -169,8 +169,10 @@ fn candidates(
 ) -> Result<Vec<Candidate>, Fault> {
     let mut place = 0;
     let mut candidates = Vec::new();
+    let magnitudes = magnitudes(&curves, linear);
     for curve in curves {
-        let own = &linear.gradients[place..place + curve.points.len()];
+        let rows = place..place + curve.points.len();
+        let (own, magnitudes) = (&linear.gradients[rows.clone()], &magnitudes[rows]);
         place += curve.points.len();
         let known = settings.outputs.iter().find(|(name, _)| *name == curve.y[0]);
         let noise = |x: f64| match (curve.series, known) {
@@ -179,16 +181,48 @@ fn candidates(
             (None, None) => None,
         };
         let mut gradients = Vec::with_capacity(own.len());
-        for (x, gradient) in curve.points.iter().zip(own) {
+        for ((x, gradient), magnitude) in curve.points.iter().zip(own).zip(magnitudes) {
             let noise = noise(*x).ok_or_else(|| {
                 fault!(BAD_OPTION, "the measurement errors of `{}` are unknown", curve.y[0])
             })?;
+            let measured = measured_magnitude(problem, &curve, *x);
+            let noise = noise * measured.map_or(1.0, |measured| magnitude / measured);
             let parts = gradient.iter().zip(&search.units).map(|(g, unit)| g * unit / noise);
             gradients.push(vec![parts.collect::<Vec<f64>>()]);
         }
         candidates.push(Candidate { curve, gradients });
     }
     Ok(with_whole_spectra(candidates))
+}
+
+/// The magnitude of each point of the spectra, whose parts are curves with the same points.
+fn magnitudes(curves: &[Curve], linear: &Linear) -> Vec<f64> {
+    let ends = curves.iter().scan(0, |end, curve| {
+        let begin = *end;
+        *end += curve.points.len();
+        Some((begin, curve))
+    });
+    let all: Vec<(usize, &Curve)> = ends.collect();
+    let of = |curve: &Curve, k: usize| {
+        let parts = all.iter().filter(|(_, own)| own.experiment == curve.experiment);
+        let parts = parts.filter(|(_, own)| own.points.len() == curve.points.len());
+        let squares = parts.map(|(begin, _)| elementary::powi(linear.values[begin + k], 2));
+        squares.sum::<f64>().sqrt()
+    };
+    curves
+        .iter()
+        .flat_map(|curve| (0..curve.points.len()).map(move |k| (curve, k)))
+        .map(|(curve, k)| of(curve, k))
+        .collect()
+}
+
+/// The measured magnitude to which errors are in proportion, at the frequency nearest to `x`.
+fn measured_magnitude(problem: &Problem, curve: &Curve, x: f64) -> Option<f64> {
+    let parts = problem.series.get(curve.in_proportion_to.clone())?;
+    let known = parts.first()?.x.iter().enumerate();
+    let (k, _) = known.min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()))?;
+    let squares = parts.iter().filter_map(|own| own.y.get(k)).map(|y| elementary::powi(*y, 2));
+    Some(squares.sum::<f64>().sqrt()).filter(|magnitude| *magnitude > 0.0)
 }
 
 /// An instrument measures both parts of a spectrum at a frequency: they are one candidate.

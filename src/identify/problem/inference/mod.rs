@@ -35,7 +35,7 @@ pub use inferred::Inferred;
 pub use likelihood::{Likelihood, beside};
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
-pub use predictions::{Curve, CurveRequest, Curves, ModelPredictions, Predict, Reach};
+pub use predictions::{Curve, CurveRequest, Curves, ModelPredictions, Predict, Proposed, Reach};
 pub use term::{Function, Operator, Term};
 
 use super::{ErrorModel, FindingKind, Run, Solution};

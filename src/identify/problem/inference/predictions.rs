@@ -3,6 +3,7 @@
 use super::super::{Experiment, Failed, Free, ModelSimulator, Observation, Problem, Simulate};
 use crate::diag::Fault;
 use crate::elementary;
+use std::ops::Range;
 
 /// How far bands go beyond the measured points, as a fraction of their width: as far as the eye
 /// continues a curve.
@@ -30,6 +31,8 @@ pub struct CurveRequest<'a> {
     pub reach: Reach,
     /// Points of each curve, evenly over its range.
     pub points: usize,
+    /// Whether experiments count that were not made.
+    pub proposes: bool,
 }
 
 /// A variable of an experiment over X.
@@ -47,6 +50,9 @@ pub struct Curve {
     pub series: Option<usize>,
     /// Whether X is the frequency of a spectrum.
     pub is_over_frequency: bool,
+    /// Where the curve was not measured itself: the parts of the spectrum to the magnitude of which the
+    /// measurement errors are in proportion; empty where they are the same at other operating points.
+    pub in_proportion_to: Range<usize>,
 }
 
 /// Curves and what simulates them, one after the other.
@@ -168,18 +174,40 @@ fn differentiate(
 pub struct ModelPredictions {
     /// The experiments of the problem, whose observations are its series in their order.
     pub experiments: Vec<Experiment>,
+    /// Experiments that were not made.
+    pub proposed: Vec<Proposed>,
+}
+
+/// An experiment that was not made, like one that was.
+pub struct Proposed {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// The series of the other one's first observation.
+    pub first: usize,
+    /// Whether errors are in proportion to the magnitude of a spectrum.
+    pub is_proportional: bool,
 }
 
 impl Predict for ModelPredictions {
     fn curves(&self, around: &[Vec<f64>], request: &CurveRequest<'_>) -> Result<Curves, Fault> {
         let (mut curves, mut kept, mut refusals) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first = 0;
-        for experiment in &self.experiments {
-            let series = first;
-            first += experiment.observations.len();
+        let made = self.experiments.iter().scan(0, |first, experiment| {
+            let series = *first;
+            *first += experiment.observations.len();
+            Some((series, experiment))
+        });
+        let made = made.map(|(series, experiment)| (series, experiment, false));
+        let proposed = self.proposed.iter().filter(|_| request.proposes);
+        let proposed = proposed.map(|own| (own.first, &own.experiment, own.is_proportional));
+        for (first, experiment, is_proportional) in made.chain(proposed) {
             match dense(experiment, around, request)? {
                 Ok(dense) => {
-                    curves.extend(described(experiment, &dense, series));
+                    let mut own = described(experiment, &dense, first);
+                    if is_proportional {
+                        let all = first..first + experiment.observations.len();
+                        own.iter_mut().for_each(|curve| curve.in_proportion_to = all.clone());
+                    }
+                    curves.append(&mut own);
                     kept.push(dense);
                 }
                 Err(why) => refusals.push(match experiment.name.as_str() {
@@ -350,6 +378,7 @@ fn described(experiment: &Experiment, dense: &Experiment, first: usize) -> Vec<C
         points: observation.x.clone(),
         series: (k < measured).then_some(first + k),
         is_over_frequency: is_over_frequency(experiment),
+        in_proportion_to: 0..0,
     };
     dense.observations.iter().enumerate().map(one).collect()
 }

@@ -44,6 +44,7 @@ impl Predict for Formulas {
             points: points.clone(),
             series,
             is_over_frequency: false,
+            in_proportion_to: 0..0,
         };
         let mut curves = vec![curve("y", Some(0))];
         let mut functions = vec![(self.measured, points.clone())];

@@ -12,7 +12,7 @@ use super::misread::{self, Doubts};
 use super::noise_test::{self, PREDICTION_STEPS};
 use super::operators::{self, Named};
 use super::segments::Segment;
-use super::{experiment, imported, noise, own_fitness, rest, set_file, spectrum};
+use super::{experiment, imported, noise, operating_point, own_fitness, rest, set_file, spectrum};
 use crate::Session;
 use crate::diag::{At as _, Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
@@ -20,7 +20,7 @@ use crate::fmi::import::Imported;
 use crate::ga::optimizer::METHODS;
 use crate::identify::Descriptions;
 use crate::identify::fitness::{FITNESSES, Fitness};
-use crate::identify::problem::inference::{Cause, adjust};
+use crate::identify::problem::inference::{Cause, ModelPredictions, Proposed, adjust};
 use crate::identify::problem::{
     Experiment, Free, Inference, LIKELIHOOD, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS,
     Origins, Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
@@ -80,6 +80,8 @@ struct Experiments {
     /// The uncertain states of each of these.
     validation_states: Vec<UncertainStates>,
     rests: Vec<[Experiment; 2]>,
+    /// Spectra at operating points at which nothing was measured.
+    proposed: Vec<Proposed>,
     /// The relative error of simulated values.
     noise: f64,
     calibration: Option<Calibration>,
@@ -130,6 +132,7 @@ fn build_in(
         validation,
         validation_states,
         rests,
+        proposed,
         noise,
         calibration,
         undecided,
@@ -141,7 +144,8 @@ fn build_in(
     drop(ModelSimulator::new(&fitted).map_err(one)?);
     let experiments = fitted.clone();
     let cancel = session.world.interrupt_flag();
-    let inference = super::inference::inference(file, &fitted, cancel.as_ref()).map_err(alone)?;
+    let models = ModelPredictions { experiments: fitted.clone(), proposed };
+    let inference = super::inference::inference(file, models, cancel.as_ref()).map_err(alone)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&fitted)?) as Box<dyn Simulate>);
     let usual = if objectives.len() > 1 { "nsga2" } else { METHODS[0].name };
     let method = operators::method(session, file, usual, parameters.len())?;
@@ -383,6 +387,9 @@ fn experiments(
         all.states.push(built.states);
         let first = all.series.len();
         all.series.extend(built.series);
+        if entry.spectrum.is_some() {
+            all.proposed.extend(operating_point::spectra(&source, session, first)?);
+        }
         let laws = super::inference::error_laws(entry).map_err(alone)?;
         for (number, own) in laws.iter().enumerate() {
             let series = &mut all.series[first + number];
@@ -395,6 +402,7 @@ fn experiments(
             }
         }
     }
+    operating_point::check(file).map_err(alone)?;
     if all.fitted.is_empty() {
         let (what, remedy) = match all.validation.is_empty() {
             true => ("there is no experiment to fit", "add a table `[[experiment]]`"),

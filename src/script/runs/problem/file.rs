@@ -393,6 +393,20 @@ pub(super) struct DesignEntry {
     /// Variables that could be measured besides, with the standard deviation of a measurement.
     #[serde(default)]
     pub outputs: IndexMap<String, f64>,
+    /// Operating points at which spectra could be measured.
+    #[serde(default)]
+    pub operating_points: Vec<OperatingPointEntry>,
+}
+
+/// An operating point of all spectra: what it has instead of theirs.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OperatingPointEntry {
+    /// When it is reached, s.
+    pub at: Option<f64>,
+    /// Values of parameters.
+    #[serde(default)]
+    pub set: IndexMap<String, ValueEntry>,
 }
 
 /// `"uniform"`, `"loguniform"`, `{ mean, sd }` or `{ median, factor }`.

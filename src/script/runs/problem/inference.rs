@@ -23,16 +23,17 @@ const POINTS: usize = 5;
 /// More points than this are an experiment of its own, which `repeat` speaks of.
 const MOST_POINTS: usize = 100;
 
-/// What the file requests of these experiments; `cancel` ends their simulations when it is set.
+/// What the file requests of the experiments of these models; `cancel` ends their simulations when it is set.
 ///
 /// # Errors
 ///
 /// Variables that the models do not have, numbers that make no sense.
 pub(super) fn inference(
     file: &ProblemFile,
-    experiments: &[Experiment],
+    mut models: ModelPredictions,
     cancel: Option<&Arc<AtomicBool>>,
 ) -> Result<Inference, Diagnostic> {
+    let experiments = &models.experiments;
     let (bands, band_variables) = match &file.bands {
         None | Some(BandsEntry::Requested(true)) => (true, Vec::new()),
         Some(BandsEntry::Requested(false)) => (false, Vec::new()),
@@ -49,12 +50,12 @@ pub(super) fn inference(
     let bootstrap = bootstrap.map(|entry| self::bootstrap(entry, &of("bootstrap"))).transpose()?;
     let posterior = file.posterior.as_ref();
     let posterior = posterior.map(|entry| self::posterior(entry, &of("posterior"))).transpose()?;
-    let mut predict = ModelPredictions { experiments: experiments.to_vec() };
-    for experiment in &mut predict.experiments {
+    let proposed = models.proposed.iter_mut().map(|own| &mut own.experiment);
+    for experiment in models.experiments.iter_mut().chain(proposed) {
         experiment.settings.cancel = cancel.cloned();
     }
     Ok(Inference {
-        predict: Some(Box::new(predict)),
+        predict: Some(Box::new(models)),
         bands,
         band_variables,
         design,

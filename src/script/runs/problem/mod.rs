@@ -37,6 +37,7 @@ mod matching;
 mod misread;
 mod noise;
 mod noise_test;
+mod operating_point;
 pub(crate) mod operators;
 mod own_fitness;
 pub(crate) mod own_function;

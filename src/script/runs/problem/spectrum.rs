@@ -173,6 +173,23 @@ fn weighting(entry: &ExperimentEntry, own: &SpectrumEntry) -> Result<Weighting, 
     }
 }
 
+/// Whether errors at another operating point are in proportion to the magnitude there; else they are the
+/// same.
+///
+/// # Errors
+/// Errors in proportion to each part, which may vanish there.
+pub(super) fn is_by_modulus(entry: &ExperimentEntry, own: &SpectrumEntry) -> Result<bool, Fault> {
+    match weighting(entry, own)? {
+        Weighting::Unit => Ok(false),
+        Weighting::Modulus => Ok(true),
+        Weighting::Proportional => bail!(
+            BAD_OPTION,
+            "`operating_points` with proportional errors are not supported: a part may vanish there";
+            help: "write `weighting = \"modulus\"`"
+        ),
+    }
+}
+
 /// How the columns become parts of the spectrum.
 struct Read {
     /// Whether they are magnitude and phase.
