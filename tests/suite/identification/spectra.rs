@@ -511,6 +511,11 @@ fn the_next_spectrum_may_be_at_another_operating_point() {
     let own = proposals.iter().find(|own| own["parameter"] == 1).unwrap();
     let plan = &own["plans"][0];
     assert_eq!(plan["experiment"], "experiment 1, g = 10", "{own}");
+    let here = crate::support::program::folder(
+        &files.each_ref().map(|(name, text)| (*name, text.as_str())),
+    );
+    let (_, out, _) = crate::support::program::gapi(&here, &["identify", "p.toml", "--plain"]);
+    assert!(out.contains("Hz (experiment 1, g = 10) would narrow"), "{out}");
     let range = [0, 1].map(|end| plan["range"][end].as_f64().unwrap());
     let informative = |f: f64, g: f64| (TAU * f * g / 0.004).powi(2);
     let present: f64 = at.iter().map(|f| informative(*f, 1.0)).sum();

@@ -135,3 +135,26 @@ fn a_model_that_becomes_stiff_is_handed_over() {
     assert!(statistics.attempts() < 2 * dassl.attempts() + 1000, "{statistics:?} {dassl:?}");
     assert!((end(&free) - end(&named)).abs() < 1e-5, "{} {}", end(&free), end(&named));
 }
+
+/// The error of a step across a kink is not seen by comparing methods of high order: an integral of the
+/// positive part of x was wrong by hundreds of tolerances.
+#[test]
+fn a_kink_without_events_is_left_to_the_implicit_method() {
+    let text = "model M input Real u; Real y(start = 0, fixed = true); Real x(start = 0, fixed = true); \
+        equation der(x) = u - x; der(y) = noEvent(if x > 0 then x else 0); end M;";
+    let (at, values) = (times(), values());
+    let values: Vec<f64> = values.iter().map(|value| value - 1.5).collect();
+    let input: Recorded<'_> = ("u", true, &at, &values);
+    let program = program(text, &[input]);
+    let (free, statistics) = run(&mut observing(&program, "y"), true, 1e-6);
+    assert_eq!(statistics.explicit_steps, 0);
+    // x between the samples, and the integral of its positive part, by midpoints.
+    let (mut x, mut exact) = (0.0_f64, 0.0);
+    for u in &values[..SAMPLES] {
+        for _ in 0..1000 {
+            exact += (u + (x - u) * (-2.5e-5_f64).exp()).max(0.0) * 5e-5;
+            x = u + (x - u) * (-5e-5_f64).exp();
+        }
+    }
+    assert!((end(&free) - exact).abs() < 1e-5, "{} {exact}", end(&free));
+}

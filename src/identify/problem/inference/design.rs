@@ -534,9 +534,12 @@ impl NextMeasurement {
         }
     }
 
-    /// Whether there are several experiments: each is repeated in a proposal.
+    /// Whether the proposals speak of several experiments, made or not.
     fn several(&self) -> bool {
-        self.proposals.iter().filter(|proposal| proposal.criterion == "repeat").count() > 1
+        let plans = self.proposals.iter().flat_map(|proposal| &proposal.plans);
+        let mut names = plans.map(|plan| &plan.experiment);
+        let first = names.next();
+        names.any(|name| Some(name) != first)
     }
 
     fn change(&self, proposal: &Proposal, k: usize) -> String {
@@ -577,7 +580,8 @@ fn place(group: &[Plan], several: bool) -> String {
             (false, _) => format!("between {x} = {low} and {high}"),
         };
     }
-    let of = if several { format!(" ({experiment})") } else { String::new() };
+    let of =
+        if several && !experiment.is_empty() { format!(" ({experiment})") } else { String::new() };
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     format!("{text}{unit}{of}")
 }
