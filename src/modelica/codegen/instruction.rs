@@ -134,7 +134,8 @@ impl Instruction {
         }
     }
 
-    fn function(self) -> Option<FunctionId> {
+    /// The mathematical function that it calls.
+    pub(super) fn function(self) -> Option<FunctionId> {
         match self {
             Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Some(id),
             _ => None,

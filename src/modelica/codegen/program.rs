@@ -223,6 +223,12 @@ impl Program {
             && self.selections.is_empty()
     }
 
+    /// Whether the right-hand side calls functions whose derivatives jump.
+    pub(crate) fn has_kinks(&self) -> bool {
+        let calls = self.continuous.rhs.tape.code.iter().filter_map(|own| own.function());
+        calls.map(|id| id.get().name).any(|name| matches!(name, "abs" | "sign" | "min" | "max"))
+    }
+
     /// Whether a mean of values of a variable is a value of it.
     pub(crate) fn has_means(&self, variable: VarId) -> bool {
         let variable = self.sorted.dae.variable(variable);

@@ -691,6 +691,10 @@ impl Events for System {
         self.record_transported(t).map_err(|f| self.refine(f))
     }
 
+    fn has_kinks(&self) -> bool {
+        self.program.differences().is_some() || self.program.has_kinks()
+    }
+
     fn longest_step(&self) -> f64 {
         self.delays.delay_times.iter().copied().fold(self.longest_transport(), f64::min)
     }

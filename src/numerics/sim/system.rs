@@ -148,6 +148,11 @@ pub trait Events {
     fn remember(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
+    /// Whether the derivatives of the right-hand side may jump where there is no event, as those of `abs`
+    /// and of relations inside `noEvent` do.
+    fn has_kinks(&self) -> bool {
+        false
+    }
     /// The longest step over which the right-hand side is known without its end.
     fn longest_step(&self) -> f64 {
         f64::INFINITY

@@ -183,6 +183,10 @@ impl Events for Sliding<'_> {
         self.inner.remember(t, y)
     }
 
+    fn has_kinks(&self) -> bool {
+        self.inner.has_kinks()
+    }
+
     fn longest_step(&self) -> f64 {
         self.inner.longest_step()
     }
