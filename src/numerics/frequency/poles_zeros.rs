@@ -6,11 +6,10 @@
 //! ```
 //!
 //! Where the highest derivative in y is not zero, y = 0 determines it, and the zeros are the poles of this
-//! system. Else
-//! the zeros are the poles of the system that an input keeps at y = 0. Where d = 0, y is differentiated
-//! until the input appears in it, after r times: what keeps y and its r − 1 derivatives at zero leaves n − r
-//! directions to the states, in which A − b c Aʳ/(c Aʳ⁻¹ b) acts. So there are exactly n − r zeros, and none
-//! at infinity that rounding would bring into sight.
+//! system. Else the zeros are the poles of the system that an input keeps at y = 0. Where d = 0, y is
+//! differentiated until the input appears in it, after r times: what keeps y and its r − 1 derivatives at
+//! zero leaves n − r directions to the states, in which A − b c Aʳ/(c Aʳ⁻¹ b) acts. So there are exactly
+//! n − r zeros, and none at infinity that rounding would bring into sight.
 //!
 //! Reference: [isidori-1995](gapilib_base::bibliography#isidori-1995), section 4.3 (zero dynamics).
 

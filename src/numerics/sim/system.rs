@@ -148,8 +148,8 @@ pub trait Events {
     fn remember(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
-    /// Whether the derivatives of the right-hand side may jump where there is no event, as those of `abs`
-    /// and of relations inside `noEvent` do.
+    /// Whether the derivatives of the right-hand side may jump without an event, as those of `abs` and of
+    /// relations inside `noEvent` do.
     fn has_kinks(&self) -> bool {
         false
     }

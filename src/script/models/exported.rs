@@ -71,7 +71,7 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<(), Vec<Diagnos
     with_inputs_to_come(session, |session| simulation::translate(session, problem)).map(|_| ())
 }
 
-/// Does something for which it is no matter that inputs have no data: they are given values later, or
+/// Does something without warnings of inputs that have no data: they are given values later, or
 /// deviations.
 pub fn with_inputs_to_come<T>(session: &mut Session, act: impl FnOnce(&mut Session) -> T) -> T {
     let before = std::mem::replace(&mut session.models.inputs_come_later, true);
