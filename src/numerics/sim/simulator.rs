@@ -215,6 +215,7 @@ impl Simulator {
                 budget,
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut self.statistics,
+                elapsed: 0.0,
             },
             integrator,
             implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
@@ -472,6 +473,11 @@ impl Run<'_> {
 
     pub fn restart(&mut self) -> Result<(), SimErrorKind> {
         self.start_crossings()?;
+        self.restart_integrator()
+    }
+
+    fn restart_integrator(&mut self) -> Result<(), SimErrorKind> {
+        self.problem.elapsed = 0.0;
         self.integrator.restart(&mut self.problem, self.t, self.y)
     }
 
@@ -567,7 +573,7 @@ impl Run<'_> {
             let after = self.handle_event(ahead, false).map_err(|_| kind)?;
             if self.has_jumped(&before) {
                 if after == After::Resume {
-                    self.integrator.restart(&mut self.problem, self.t, self.y)?;
+                    self.restart_integrator()?;
                 }
                 return Ok(after);
             }
@@ -819,7 +825,7 @@ impl Run<'_> {
                     self.problem.statistics.continued += 1;
                     return Ok(After::Resume);
                 }
-                self.integrator.restart(&mut self.problem, self.t, self.y)?;
+                self.restart_integrator()?;
             }
         }
         Ok(After::Restarted)

@@ -580,6 +580,23 @@ fn a_fast_transient_is_resolved_days_after_the_start() {
 
 /// A simulation in parts knows from the last part how long steps may be: attempts as long as a part fail.
 #[test]
+fn transients_shorter_than_the_digits_of_time_are_resolved() {
+    // A rest before the experiment: x' = 1e12 (1/(1 + x) - x) from 0, whose root is the golden ratio.
+    // At -1e7 s t has digits of 2e-9 s.
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for method in ["dassl", "radau5", "rodas4"] {
+        let mut problem = TestProblem::new(&[0.0], 1, |_, y, _, out| {
+            out[0] = 1e12 * (1.0 / (1.0 + y[0]) - y[0]);
+        });
+        let to = Settings { start: -1e7, ..by(method, settings(10.0, 1e-9)) };
+        let (trajectory, statistics) = simulate(&mut problem, &to).unwrap();
+        let last = *trajectory.column(0).last().unwrap();
+        assert!((last - golden).abs() < 1e-9, "{method}: {last}");
+        assert!(statistics.steps < 2000, "{method}: {statistics:?}");
+    }
+}
+
+#[test]
 fn parts_go_on_with_the_steps_of_the_last_part() {
     static EVALUATIONS: AtomicUsize = AtomicUsize::new(0);
     let run = |keeps_step: bool| {

@@ -546,7 +546,7 @@ impl Integrator for Bdf {
     }
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
-        let smallest = problem.smallest_step(self.t);
+        let smallest = problem.smallest_step();
         let tolerance = SAFETY * problem.settings.tolerance;
         set_weights(tolerance, &self.differences[0], problem.nominal, &mut self.norms.weights);
         self.set_direction_weights(problem, tolerance);
@@ -562,7 +562,7 @@ impl Integrator for Bdf {
                     self.convergence.safety = newton_safety(iterations, MAX_ITERATIONS);
                     if self.convergence.error <= 1.0 {
                         self.accept(t_new);
-                        problem.statistics.steps += 1;
+                        problem.note_step(self.h);
                         return Ok(());
                     }
                     problem.statistics.error_failures += 1;

@@ -310,7 +310,7 @@ impl Integrator for Exact {
         self.y = y;
         self.t = end;
         self.longest *= 2.0;
-        problem.statistics.steps += 1;
+        problem.note_step(length);
         problem.statistics.exact_steps += 1;
         match self.y.iter().all(|y| y.is_finite()) {
             true => Ok(()),

@@ -259,7 +259,7 @@ impl Integrator for ExplicitRungeKutta {
             differentiate(problem, self.t, &self.y, &mut self.derivative_end)?;
         }
         self.derivatives[0].copy_from_slice(&self.derivative_end);
-        self.control.begin(problem, self.t);
+        self.control.begin(problem);
         loop {
             problem.may_continue()?;
             let attempt = Attempt::cut(limit, self.t_old, self.control.h());
@@ -267,7 +267,7 @@ impl Integrator for ExplicitRungeKutta {
             let Some(embedded) = &self.tableau.embedded else {
                 advanced.inspect_err(|_| problem.statistics.newton_failures += 1)?;
                 self.accept(problem, attempt)?;
-                problem.statistics.steps += 1;
+                problem.note_step(attempt.h);
                 return Ok(());
             };
             match advanced {

@@ -378,7 +378,7 @@ impl Integrator for Radau {
     }
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
-        self.control.begin(problem, self.t);
+        self.control.begin(problem);
         if !self.has_past {
             self.control.be_cautious();
         }

@@ -228,7 +228,7 @@ impl Integrator for Rodas {
     }
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
-        self.control.begin(problem, self.t);
+        self.control.begin(problem);
         self.linearize(problem)?;
         loop {
             problem.may_continue()?;

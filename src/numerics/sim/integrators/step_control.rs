@@ -50,7 +50,8 @@ impl Attempt {
     pub fn cut(limit: f64, t: f64, h: f64) -> Attempt {
         let reaches_limit = t + h * STRETCH >= limit;
         let end = if reaches_limit { limit } else { t + h };
-        Attempt { h: end - t, end, reaches_limit }
+        // A step may be too short for the digits of t.
+        Attempt { h: if end > t { end - t } else { h }, end, reaches_limit }
     }
 }
 
@@ -59,7 +60,7 @@ impl Attempt {
 pub(crate) struct StepControl {
     /// s
     h: f64,
-    /// Below this a step does not change t noticeably.
+    /// Below this a step does not change the time since the restart noticeably.
     smallest: f64,
     /// Whether the next step may not be longer: an attempt of this one was rejected.
     is_cautious: bool,
@@ -89,9 +90,9 @@ impl StepControl {
         self.h = if is_first { first } else { first.max(AFTER_EVENT * self.h) };
     }
 
-    /// Begins a step from t.
-    pub fn begin(&mut self, problem: &Problem, t: f64) {
-        self.smallest = problem.smallest_step(t);
+    /// Begins a step.
+    pub fn begin(&mut self, problem: &Problem) {
+        self.smallest = problem.smallest_step();
         self.is_cautious = false;
     }
 
@@ -112,7 +113,7 @@ impl StepControl {
 
     /// An attempt was accepted; the next step has `factor` times its length, if it may.
     pub fn accept(&mut self, problem: &mut Problem, attempt: Attempt, factor: f64) {
-        problem.statistics.steps += 1;
+        problem.note_step(attempt.h);
         let next = attempt.h * if self.is_cautious { factor.min(1.0) } else { factor };
         // A step cut short at the limit says little about longer ones.
         let next = if attempt.reaches_limit { next.max(self.h) } else { next };

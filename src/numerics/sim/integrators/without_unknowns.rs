@@ -21,7 +21,7 @@ impl Integrator for WithoutUnknowns {
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
         problem.may_continue()?;
-        problem.statistics.steps += 1;
+        problem.note_step(limit - self.t);
         self.t = limit;
         Ok(())
     }
