@@ -156,6 +156,9 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         ("parameterScaleNormal", true) => {
             format!("{{ median = {low}, factor = {high}{base} }}")
         }
+        ("logNormal", _) => {
+            format!("{{ distribution = \"lognormal\", mean = {low}, sd = {high}{within} }}")
+        }
         ("laplace" | "parameterScaleLaplace", false) => {
             format!("{{ distribution = \"laplace\", median = {low}, scale = {high}{within} }}")
         }
@@ -164,7 +167,7 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         }
         _ => {
             let fault = Fault::new(BAD_OPTION, format!("the prior `{kind}` is not supported"))
-                .help("supported are uniform, normal and Laplace ones, also parameterScale…");
+                .help("supported are uniform, normal, log-normal and Laplace ones, also parameterScale…");
             return Err(row.refusal(fault));
         }
     };

@@ -197,9 +197,11 @@ fn measurement(row: &Row, rests: &BTreeMap<String, String>) -> Row {
 fn parameter(row: &Row) -> Result<Row, Refusal> {
     let mut pairs = Row::pairs(row);
     if let Some(kind) = row.get("priorDistribution") {
-        if !["normal", "laplace", "uniform"].contains(&kind) {
-            return Err(row.wrong(format!("the prior `{kind}` is not supported")));
-        }
+        let kind = match kind {
+            "normal" | "laplace" | "uniform" => kind,
+            "log-normal" => "logNormal",
+            _ => return Err(row.wrong(format!("the prior `{kind}` is not supported"))),
+        };
         pairs.push(("objectivePriorType".to_owned(), kind.to_owned()));
         let numbers = row.get("priorParameters").unwrap_or_default().to_owned();
         pairs.push(("objectivePriorParameters".to_owned(), numbers));

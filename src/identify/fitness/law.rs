@@ -28,8 +28,9 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{LN_2, PI, TAU};
 
 /// Below this size of u, the corner of the density of Laplace is rounded off for the steps of least
-/// squares: there, -log L is at most half of it too large. Chosen, not measured.
-const ROUNDED: f64 = 0.01;
+/// squares: there, -log L is at most half of it too large. With an exponential decay of 25 points the fit
+/// was 0.006 above the minimum with 0.01, 0.0006 with this; with 1e-5 51 descents were needed instead of 21.
+const ROUNDED: f64 = 1e-3;
 
 /// How errors of measurement are distributed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -212,6 +212,14 @@ fn laplace_noise_and_priors_are_imported() {
     }
     let (code, out, errors) = gapi(&here, &["identify", "p/p.toml", "--out", "fit"]);
     assert_eq!(code, 0, "{out}{errors}");
+    let path = here.path().join("p.tsv");
+    let text = fs::read_to_string(&path).unwrap().replacen("laplace\t2;3", "logNormal\t2;3", 1);
+    fs::write(&path, text).unwrap();
+    let (code, out, errors) = gapi(&here, &["import", "p.yaml", "--out", "q"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let written = fs::read_to_string(here.path().join("q/p.toml")).unwrap();
+    let expected = "prior = { distribution = \"lognormal\", mean = 2, sd = 3 }";
+    assert!(written.contains(expected), "{written}");
 }
 
 /// The problem in version 2 has the fit that it has in version 1.
@@ -277,7 +285,8 @@ fn an_exported_problem_has_the_same_objective() {
                  der(h) = -k*rate[1]*h;\nend Tank;\n";
     let problem = "model = \"Tank\"\nfiles = [\"Tank.mo\"]\nbands = false\n[parameters]\n\
                    k = { min = 0.1, max = 10, prior = { mean = 1, sd = 0.5, min = 0.1, max = 10 } }\n\
-                   \"rate[1]\" = { min = 0.1, max = 5 }\n\
+                   \"rate[1]\" = { min = 0.1, max = 5, prior = { distribution = \"lognormal\", \
+                   mean = 0.1, sd = 0.4, min = 0.1, max = 5 } }\n\
                    h_0 = { min = 1, max = 3, per_experiment = true }\n\
                    [[experiment]]\nname = \"a b\"\ndata = \"a.csv\"\nset = { \"rate[2]\" = 2 }\n\
                    outputs = { h = { column = \"h\", sigma = \"s\" }, \

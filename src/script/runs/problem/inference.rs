@@ -253,6 +253,10 @@ fn distribution(
         ("normal", [None, None, Some(median), Some(factor), None]) => {
             (Distribution::LogNormal { median, factor }, 0.0)
         }
+        ("lognormal", [Some(mean), Some(sd), None, None, None]) if numbers.base.is_none() => {
+            let [median, factor] = [mean, sd].map(elementary::exp);
+            (Distribution::LogNormal { median, factor }, 0.0)
+        }
         ("laplace", [None, None, Some(median), None, Some(scale)]) => {
             (Distribution::Laplace { median, scale }, 0.0)
         }
@@ -265,6 +269,9 @@ fn distribution(
     if prior.point().is_some() {
         truncate(&mut prior, name, [min, max], range)?;
     }
+    if let (Distribution::LogNormal { median, factor }, "lognormal") = (found, kind) {
+        return Ok(of_value([median, factor].map(elementary::ln), prior.constant));
+    }
     let constant = prior.constant;
     match numbers.base {
         Some(_) if !prior.is_logarithmic() => {
@@ -274,6 +281,13 @@ fn distribution(
         Some(base) => Ok((found, constant - elementary::ln(elementary::ln(base)))),
         None => Ok((found, constant)),
     }
+}
+
+/// The density of a parameter whose logarithm is normal: it is 1/p times that of the logarithm, which
+/// moves the centre of that, (ln p - m)²/(2 s²) + ln p = (ln p - m + s²)²/(2 s²) + m - s²/2.
+fn of_value([mean, sd]: [f64; 2], constant: f64) -> (Distribution, f64) {
+    let [median, factor] = [mean - sd * sd, sd].map(elementary::exp);
+    (Distribution::LogNormal { median, factor }, constant + mean - 0.5 * sd * sd)
 }
 
 /// Normalizes a density that is 0 beyond limits.
@@ -298,7 +312,7 @@ fn truncate(
 }
 
 fn unreadable(name: &str) -> Fault {
-    fault!(BAD_OPTION, "the prior of `{name}` cannot be read"; help: "write `{{ mean = 1, sd = 0.1 }}`, `{{ median = 1, factor = 1.5 }}` for a log-normal one, `{{ distribution = \"laplace\", median = 1, scale = 0.1 }}`, \"uniform\" or \"loguniform\"")
+    fault!(BAD_OPTION, "the prior of `{name}` cannot be read"; help: "write `{{ mean = 1, sd = 0.1 }}`, `{{ median = 1, factor = 1.5 }}` for a log-normal one (or `{{ distribution = \"lognormal\", mean = 0, sd = 0.4 }}`, of which the value has the density), `{{ distribution = \"laplace\", median = 1, scale = 0.1 }}`, \"uniform\" or \"loguniform\"")
 }
 
 /// Replicates of a bootstrap unless the file says how many: the ends of 95 % intervals are then

@@ -429,6 +429,7 @@ fn prior_of(prior: &PriorEntry, range: [f64; 2]) -> Result<[String; 2], Fault> {
                     return Err(unsayable("a prior that ends outside of the search range"));
                 }
                 ("normal", Some(mean), Some(sd), None, None) => ["normal", &pair(mean, sd)],
+                ("lognormal", Some(mean), Some(sd), None, None) => ["log-normal", &pair(mean, sd)],
                 ("laplace", None, None, Some(median), Some(scale)) => {
                     ["laplace", &pair(median, scale)]
                 }

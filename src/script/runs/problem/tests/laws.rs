@@ -1,6 +1,7 @@
 //! Errors and priors that are not normal, and what their likelihood is.
 
 use super::*;
+use std::f64::consts::TAU;
 
 const MODEL: &str = "model M\n  parameter Real p = 1;\n  parameter Real s = 1;\n  Real a = p;\n  \
                      Real deviation = s;\nend M;\n";
@@ -187,4 +188,28 @@ fn constants_of_priors_are_in_the_likelihood() {
         ["", ", base = 10"].map(|base| negative(&format!("{{ median = 2, factor = 3{base} }}")));
     let of_base = 10.0_f64.ln().ln();
     assert!((natural - decimal - of_base).abs() < 1e-9, "{natural} {decimal}");
+}
+
+/// The density of a log-normal prior of the value is 1/p times that of ln p: it moves the best value, and
+/// its constants are in the likelihood.
+#[test]
+fn a_log_normal_prior_can_be_one_of_the_value() {
+    for (sd, limits, constant) in [
+        (0.1, "", 0.0),
+        (0.5, "", 0.0),
+        // ln (Φ((ln 9 - 1)/0.5) - Φ((ln 0.1 - 1)/0.5))
+        (0.5, ", min = 0.1, max = 9", -0.008_357_502_417_995),
+    ] {
+        let negative = |p: f64| {
+            let data: f64 = MEASURED.iter().map(|y| 0.5 * (y - p).powi(2) + 0.5 * TAU.ln()).sum();
+            data + 0.5 * ((p.ln() - 1.0) / sd).powi(2) + (sd * p * TAU.sqrt()).ln() + constant
+        };
+        let numbers = format!("distribution = \"lognormal\", mean = 1, sd = {sd}{limits}");
+        let found = fitted(&format!(", prior = {{ {numbers} }} }}"), "sigma = 1", &MEASURED);
+        let p = found.parameters[0].value;
+        let own = found.likelihood.negative_log_likelihood.unwrap();
+        assert!((own - negative(p)).abs() < 1e-8, "{own} {}", negative(p));
+        let beside = negative(1.001 * p).min(negative(0.999 * p));
+        assert!(negative(p) < beside, "{p} is no minimum");
+    }
 }
