@@ -257,6 +257,7 @@ fn curve(evaluations: u64) -> Problem {
             x_column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
+            scaling: Default::default(),
         }],
         objectives: vec![(
             "sse".to_owned(),

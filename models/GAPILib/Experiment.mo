@@ -10,6 +10,8 @@ record Experiment "An experiment of a problem: what was measured, and under whic
   Real sigmas[:] = fill(0.0, 0) "Standard deviations of the errors of their measurements; 0, or none, where not known";
   String deviations[:] = fill("", 0) "In place of sigmas: columns, variables and formulas with the standard deviations, or estimate; empty where sigmas has a number";
   String errors[:] = fill("", 0) "How the errors are distributed: normal, lognormal, laplace, loglaplace, student or poisson; empty for normal";
+  String scales[:] = fill("", 0) "Of relative data, scales that are estimated: estimate, a name that outputs share, or either with ' of any sign'; empty for none";
+  String offsets[:] = fill("", 0) "Offsets that are estimated: estimate, or a name that outputs share; empty for none";
   Real degreesOfFreedom[:] = fill(0.0, 0) "Those of student; 0, or none, for 4";
   String inputs[:] = fill("", 0) "Inputs of the model that follow columns of the data";
   String inputColumns[:] = inputs "Their columns";

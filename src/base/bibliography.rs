@@ -231,6 +231,15 @@
 //! - **transtrum-sethna-2012** — M. K. Transtrum, J. P. Sethna: Improvements to the
 //!   Levenberg-Marquardt algorithm for nonlinear least-squares minimization. arXiv:1201.5885, 2012.
 //!
+//! <a id="golub-pereyra-1973"></a>
+//! - **golub-pereyra-1973** — G. H. Golub, V. Pereyra: The differentiation of pseudo-inverses and
+//!   nonlinear least squares problems whose variables separate. SIAM Journal on Numerical Analysis
+//!   10(2), 1973, 413–432.
+//!
+//! <a id="kaufman-1975"></a>
+//! - **kaufman-1975** — L. Kaufman: A variable projection method for solving separable nonlinear
+//!   least squares problems. BIT 15, 1975, 49–57.
+//!
 //! <a id="bates-watts-1981"></a>
 //! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
 //!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.

@@ -460,6 +460,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
+        scaling: Default::default(),
     })
 }
 

@@ -188,6 +188,7 @@ impl Dataset {
             x_column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
+            scaling: Default::default(),
         }
     }
 

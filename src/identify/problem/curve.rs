@@ -34,10 +34,18 @@ fn draw<'a>(
         let (own, others) = rest.split_at_mut(count);
         if let Some(curves) = curves(experiment, values, hurry) {
             let pairs = own.iter_mut().zip(curves).filter(|(series, _)| !series.has_no_curve);
-            pairs.for_each(|(series, curve)| series.curve = curve);
+            pairs.for_each(|(series, curve)| series.curve = scaled(series, curve));
         }
         rest = others;
     }
+}
+
+/// A curve in the units of the data.
+fn scaled(series: &SolvedSeries, mut curve: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let scale = series.scale.as_ref().map_or(1.0, |own| own.value);
+    let offset = series.offset.as_ref().map_or(0.0, |own| own.value);
+    curve.iter_mut().for_each(|point| point[1] = scale * point[1] + offset);
+    curve
 }
 
 fn curves(

@@ -1,6 +1,7 @@
 //! Evaluates populations on all cores. What comes out depends neither on the number of threads
 //! nor on what was evaluated before: equal genes are answered from memory.
 
+use super::relative::{Compared, Relative, Scaled};
 use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
 use crate::elementary;
@@ -46,6 +47,8 @@ pub struct Evaluation {
     /// What residuals are multiplied with, where there is a sum of squares.
     scales: Option<Vec<f64>>,
     n_objectives: usize,
+    /// Scales and offsets that each simulation gets before it is compared.
+    relative: Option<Relative>,
     simulators: Simulators,
     /// The independent parts of what follows the search.
     pub parts: Parts,
@@ -88,6 +91,7 @@ impl Evaluation {
         Ok(Evaluation {
             scales,
             n_objectives: problem.objectives.len(),
+            relative: Relative::of(problem),
             simulators: Simulators::on(processors, &*problem.simulator)?,
             measured,
             weights,
@@ -189,6 +193,7 @@ impl Evaluation {
         }
         let mut row = vec![f64::NAN; self.measured.len()];
         let failed = self.simulators.own().simulate(&problem.values(genome), &mut row).err();
+        self.relate(&mut row);
         self.rate(problem, &row, failed).0
     }
 
@@ -255,7 +260,8 @@ impl Evaluation {
             }
         }
         let places: Vec<Vec<f64>> = unknown.iter().map(|&k| problem.values(batch.row(k))).collect();
-        let found = self.distributed(&places, (Asked::Points, 1.0), |own| {
+        let found = self.distributed(&places, (Asked::Points, 1.0), |mut own| {
+            self.relate(&mut own.row);
             let rated = self.rate(problem, &own.row, own.failed);
             (rated, residuals.then_some(own.row))
         });
@@ -300,6 +306,7 @@ impl Evaluation {
     pub fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, Failed> {
         let mut row = vec![f64::NAN; self.measured.len()];
         self.simulators.own().simulate(values, &mut row)?;
+        self.relate(&mut row);
         Ok(row)
     }
 
@@ -314,8 +321,39 @@ impl Evaluation {
         values: &[Vec<f64>],
         factor: f64,
     ) -> Vec<Result<Vec<f64>, Failed>> {
+        let points = |mut own: Simulation| {
+            self.relate(&mut own.row);
+            own.failed.map_or(Ok(own.row), Err)
+        };
+        self.distributed(values, (Asked::Points, factor), points)
+    }
+
+    /// The same as the model has them, without scales and offsets of relative data.
+    pub(super) fn simulate_unscaled(
+        &self,
+        values: &[Vec<f64>],
+        factor: f64,
+    ) -> Vec<Result<Vec<f64>, Failed>> {
         let points = |own: Simulation| own.failed.map_or(Ok(own.row), Err);
         self.distributed(values, (Asked::Points, factor), points)
+    }
+
+    /// Scales and offsets of relative data.
+    pub(super) fn relative(&self) -> Option<&Relative> {
+        self.relative.as_ref()
+    }
+
+    /// The scales and offsets that fit a simulation best.
+    pub(super) fn scaled_best(&self, relative: &Relative, row: &[f64]) -> Scaled {
+        let (measured, weights) = (&self.measured[..], &self.weights[..]);
+        relative.fit(row, Compared { measured, weights, are_final: false })
+    }
+
+    /// Gives simulated points the scales and offsets of relative data.
+    fn relate(&self, row: &mut [f64]) {
+        if let Some(relative) = &self.relative {
+            relative.apply(&self.scaled_best(relative, row), row);
+        }
     }
 
     /// Runs a job for every number below `count` on all threads, each with a simulator of its own.
@@ -362,7 +400,7 @@ impl Evaluation {
     }
 
     /// The simulated points at several places, with derivatives where the simulator has exact ones,
-    /// with the tolerance of the solver times `factor`.
+    /// with the tolerance of the solver times `factor`; as the model has them.
     pub(super) fn exact_all(
         &self,
         places: &[Vec<f64>],
@@ -376,6 +414,7 @@ impl Evaluation {
                 exact: own.exact,
                 refusal: own.refusal,
                 simulations: 1,
+                shares: Vec::new(),
             }),
         };
         self.distributed(places, (Asked::DerivativesOrPoints, factor), linearization)

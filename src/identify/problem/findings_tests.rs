@@ -78,6 +78,7 @@ fn problem(
         x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
+        scaling: Default::default(),
     });
     let series: Vec<Series> = series.collect();
     let objective = match fitness {

@@ -55,6 +55,25 @@ impl Evaluation {
         places: &[Vec<f64>],
         factor: f64,
     ) -> Vec<Result<Linearization, Failed>> {
+        let mut found = self.linearize_unscaled(problem, places, factor);
+        if let Some(relative) = self.relative() {
+            for own in found.iter_mut().flatten() {
+                let scaled = self.scaled_best(relative, &own.simulated);
+                relative.scale_derivatives(&scaled, &mut own.derivatives);
+                own.shares = relative.project(&scaled, &own.simulated, &mut own.derivatives);
+                relative.apply(&scaled, &mut own.simulated);
+            }
+        }
+        found
+    }
+
+    /// The same as the model has them, without scales and offsets of relative data.
+    pub(super) fn linearize_unscaled(
+        &self,
+        problem: &Problem,
+        places: &[Vec<f64>],
+        factor: f64,
+    ) -> Vec<Result<Linearization, Failed>> {
         let mut found = self.exact_all(places, factor);
         let without_derivatives: Vec<usize> = (0..places.len())
             .filter(|&k| matches!(&found[k], Ok(own) if own.derivatives.is_empty()))
@@ -97,7 +116,7 @@ impl Evaluation {
                 points.push(point);
             }
         }
-        let mut rows = self.simulate_scaled(&points, factor * tightening(problem)).into_iter();
+        let mut rows = self.simulate_unscaled(&points, factor * tightening(problem)).into_iter();
         let mut again = Vec::new();
         for stencil in stencils {
             let own: Vec<_> = rows.by_ref().take(stencil.points().count()).collect();

@@ -14,4 +14,7 @@ pub struct Linearization {
     pub refusal: Option<String>,
     /// Simulations that they took; one with sensitivities counts once.
     pub simulations: u64,
+    /// For each parameter the part of its column that scales and offsets of relative data do not make
+    /// up for; empty where there are none.
+    pub(crate) shares: Vec<f64>,
 }

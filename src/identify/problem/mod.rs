@@ -18,6 +18,7 @@ mod error_model;
 mod evaluation;
 mod event_limits;
 mod experiment;
+mod explicit;
 mod failure;
 mod failure_region;
 mod finding;
@@ -43,6 +44,7 @@ mod profile;
 mod profiled;
 mod range_notes;
 mod refit;
+mod relative;
 mod run;
 mod saddle;
 mod saved;
@@ -94,6 +96,7 @@ pub(crate) use plane::{SpectrumFigures, planes};
 pub use portable::{Portable, PortableExperiment};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;
+pub use relative::{Scale, Scaling, SolvedCoefficient};
 pub use run::Run;
 pub use script_result::{ScriptError, ScriptResult};
 pub use searches::best_of;
@@ -202,6 +205,8 @@ pub struct Series {
     pub sigma: Sigma,
     /// How the errors are distributed.
     pub law: Law,
+    /// What is estimated of its units.
+    pub scaling: Scaling,
     /// The points of which only a limit was measured, Y, with [`Law::Below`] or [`Law::Above`].
     pub censored: Vec<(usize, Law)>,
     /// The column of the data that Y was read from.
@@ -245,6 +250,7 @@ impl Series {
     pub fn deviations(&self, name: &str, back: usize) -> Series {
         Series {
             role: Role::Deviation(back),
+            scaling: Scaling::default(),
             y_name: name.to_owned(),
             y: vec![0.0; self.y.len()],
             sigma: Sigma::Given(vec![1.0; self.y.len()]),

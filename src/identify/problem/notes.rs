@@ -34,7 +34,7 @@ pub fn findings(
     simulated: &[f64],
 ) -> Vec<Finding> {
     let mut findings: Vec<Finding> = about_count(solution, run, statistics).into_iter().collect();
-    findings.extend(about_effects(solution, effects));
+    findings.extend(about_effects(solution, statistics, effects));
     findings.extend(about_parameters(solution, statistics, judged));
     if run.problem.objectives.len() > 1 {
         findings.push(several_objectives(solution));
@@ -82,13 +82,24 @@ fn about_count(solution: &Solution, run: &Run, statistics: &Statistics) -> Optio
     Some(finding.statistic(statistics.freedom, 1.0))
 }
 
-fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Finding> {
+fn about_effects(
+    solution: &Solution,
+    statistics: &Statistics,
+    effects: &[(usize, Effect)],
+) -> Vec<Finding> {
     let one = |(k, effect): &(usize, Effect)| {
         let parameter = &solution.parameters[*k];
         let name = &parameter.name;
         let end = |end: f64| significant(end, 4);
         let [min, max] = parameter.range;
         let (kind, sentence) = match effect {
+            Effect::None if statistics.is_made_up_for(*k) => (
+                FindingKind::StructurallyNonIdentifiable,
+                format!(
+                    "The data do not determine {name}: it does the same as an estimated scale or \
+                     offset of an output. Fix it, or give the scale."
+                ),
+            ),
             Effect::None => {
                 (FindingKind::NoEffect, format!("{name} has no effect on the measured points."))
             }

@@ -4,7 +4,7 @@ use super::grounds::Grounds;
 use super::statistics::distributions::{normal_quantile, student_quantile};
 use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
-    Profile, Profiles, Severity, SolvedDescent, residual_test,
+    Profile, Profiles, Severity, SolvedCoefficient, SolvedDescent, residual_test,
 };
 use crate::Descriptions;
 use crate::elementary;
@@ -345,6 +345,12 @@ pub struct SolvedSeries {
     /// The standard deviations of the points, where the model computes them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) deviations: Vec<f64>,
+    /// The scale of the simulation, where it was estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<SolvedCoefficient>,
+    /// The offset of the simulation, where it was estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<SolvedCoefficient>,
     /// Runs of the same sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub(crate) residual_test: Option<[f64; 4]>,
@@ -385,6 +391,8 @@ impl SolvedSeries {
             sigma_estimated: series.sigma.is_estimated(),
             sigma_computed: matches!(series.sigma, super::Sigma::Variable(_)),
             deviations: Vec::new(),
+            scale: None,
+            offset: None,
             residual_test: None,
             curve: Vec::new(),
             points,

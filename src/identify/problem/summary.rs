@@ -2,6 +2,8 @@
 
 use super::effects::{Effect, Finite, effect};
 use super::ending::{self, Ending, EndingKind};
+use super::explicit::Explicit;
+use super::inference::errors_of_coefficients;
 use super::statistics::distributions::chi_square_tails;
 use super::verdicts::Judged;
 use super::{
@@ -112,15 +114,22 @@ impl Solution {
             ..SolvedParameter::default()
         };
         let mut rest = &simulated[..];
-        let series = |own: &super::Series| {
+        let scaled = Explicit::without_columns(&run.evaluation, &best.values);
+        let series = |(number, own): (usize, &super::Series)| {
             let (simulated, others) = rest.split_at(own.x.len());
             rest = others;
-            own.is_data().then(|| SolvedSeries::new(own, simulated))
+            own.is_data().then(|| {
+                let mut solved = SolvedSeries::new(own, simulated);
+                if let Some(own) = &scaled {
+                    [solved.scale, solved.offset] = own.solved(number, &[]);
+                }
+                solved
+            })
         };
         let mut solution = Solution {
             fitness: best.fitness,
             parameters: run.problem.parameters.iter().zip(&best.values).map(parameter).collect(),
-            series: run.problem.series.iter().filter_map(series).collect(),
+            series: run.problem.series.iter().enumerate().filter_map(series).collect(),
             validation,
             ..searched(run, stop)
         };
@@ -277,10 +286,14 @@ fn solved_series(
     simulated: &[f64],
 ) -> Vec<SolvedSeries> {
     let mut first = 0;
-    let one = |measured: &super::Series| -> Option<SolvedSeries> {
+    let errors = errors_of_coefficients(statistics);
+    let one = |(number, measured): (usize, &super::Series)| -> Option<SolvedSeries> {
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
+        if let Some(own) = &statistics.explicit {
+            [solved.scale, solved.offset] = own.solved(number, &errors);
+        }
         // The weights are roots of the information, which the tails of Student's density lessen.
         let scale = |(point, w): (usize, &f64)| match measured.law_of(point) {
             law @ Law::Student(_) => measured.weight / w * law.root_information(0.0),
@@ -300,7 +313,7 @@ fn solved_series(
         // Priors and deviations have points, but they are not data.
         measured.is_data().then_some(solved)
     };
-    problem.series.iter().filter_map(one).collect()
+    problem.series.iter().enumerate().filter_map(one).collect()
 }
 
 /// What the parameters do whose derivative is zero.

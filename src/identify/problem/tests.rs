@@ -48,6 +48,7 @@ pub(super) fn problem(
         x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
+        scaling: Default::default(),
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, method).unwrap();

@@ -1,6 +1,9 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{EndingKind, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict, planes};
+use super::{
+    EndingKind, ScriptError, Solution, SolvedCoefficient, SolvedParameter, SolvedSeries, Verdict,
+    planes,
+};
 use crate::Descriptions;
 use crate::plot::{self, Comparison, Figure};
 use crate::table::{counted, digits_of, ends, quoted, significant};
@@ -391,6 +394,11 @@ fn series_line(series: &SolvedSeries) -> String {
         };
         _ = write!(line, ", sigma {} ({how})", significant(sigma, 4));
     }
+    for (what, own) in [("scale", &series.scale), ("offset", &series.offset)] {
+        let Some(own) = own else { continue };
+        let name = if own.name.is_empty() { String::new() } else { format!(" {}", own.name) };
+        _ = write!(line, ", {what}{name} {} ({})", significant(own.value, 5), error_in_words(own));
+    }
     if let Some(r_squared) = series.r_squared {
         _ = write!(line, ", R2 {}", significant(r_squared, 6));
     }
@@ -404,6 +412,14 @@ fn series_line(series: &SolvedSeries) -> String {
         );
     }
     line
+}
+
+/// The standard error of a scale or an offset.
+fn error_in_words(own: &SolvedCoefficient) -> String {
+    match own.deviation {
+        Some(deviation) => format!("standard error {}", significant(deviation, 3)),
+        None => "no standard error".to_owned(),
+    }
 }
 
 /// Rows of one length, their columns under each other.

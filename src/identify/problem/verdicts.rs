@@ -137,6 +137,9 @@ impl Solution {
         let own = &mut self.parameters[k];
         if let Some((_, effect)) = effects.iter().find(|(place, _)| *place == k) {
             match effect {
+                Effect::None if statistics.is_made_up_for(k) => {
+                    own.verdict = Some(Verdict::StructurallyNonIdentifiable);
+                }
                 Effect::None => own.verdict = Some(Verdict::WithoutEffect),
                 Effect::Finite(Finite { ends, .. }) => own.take(*ends),
             }

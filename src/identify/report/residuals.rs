@@ -170,6 +170,8 @@ fn predictions(solution: &Solution) -> Markup {
 fn table(view: &View) -> Markup {
     let solution = view.solution;
     let sigmas = solution.series.iter().any(|series| series.sigma.is_some());
+    let scales = solution.series.iter().any(|own| own.scale.is_some() || own.offset.is_some());
+    let columns = (sigmas, scales);
     html! {
         table {
             thead {
@@ -178,6 +180,7 @@ fn table(view: &View) -> Markup {
                     th scope="col" { "Points" }
                     th scope="col" { "RMSE" }
                     @if sigmas { th scope="col" { "σ of the data" } }
+                    @if scales { th scope="col" { "Scale, offset" } }
                     th scope="col" { "R²" }
                     th scope="col" { "Runs (expected)" }
                     th scope="col" { "p-value" }
@@ -186,14 +189,18 @@ fn table(view: &View) -> Markup {
                 }
             }
             tbody {
-                @for series in &solution.series { (row(solution, series, ("", sigmas))) }
-                @for series in &solution.validation { (row(solution, series, (" (validation)", sigmas))) }
+                @for series in &solution.series { (row(solution, series, ("", columns))) }
+                @for series in &solution.validation { (row(solution, series, (" (validation)", columns))) }
             }
         }
     }
 }
 
-fn row(solution: &Solution, series: &SolvedSeries, (kind, sigmas): (&str, bool)) -> Markup {
+fn row(
+    solution: &Solution,
+    series: &SolvedSeries,
+    (kind, (sigmas, scales)): (&str, (bool, bool)),
+) -> Markup {
     html! {
         tr {
             th scope="row" {
@@ -207,6 +214,17 @@ fn row(solution: &Solution, series: &SolvedSeries, (kind, sigmas): (&str, bool))
                     @match series.sigma { Some(sigma) => (engineering(sigma, 4, &series.y[1])), None => "–" }
                     @if series.sigma_estimated { " (estimated)" }
                     @if series.sigma_computed { " (root mean square, from the model)" }
+                }
+            }
+            @if scales {
+                td {
+                    @for (k, own) in series.scale.iter().chain(&series.offset).enumerate() {
+                        @if k > 0 { br; }
+                        @if !own.name.is_empty() { (own.name) " = " }
+                        (number(own.value, 5))
+                        @if let Some(deviation) = own.deviation { " ± " (number(deviation, 2)) }
+                    }
+                    @if series.scale.is_none() && series.offset.is_none() { "–" }
                 }
             }
             td { @match series.r_squared { Some(r) => (number(r, 6)), None => "–" } }

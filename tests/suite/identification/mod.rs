@@ -13,6 +13,7 @@ mod nist_problems;
 mod operators;
 mod process_noise;
 mod ranks;
+mod relative_data;
 mod report_page;
 mod resume;
 mod scale;

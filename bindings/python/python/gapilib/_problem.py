@@ -42,6 +42,8 @@ class Column(TypedDict, total=False):
     interpolation: str
     weight: Union[float, str]
     sigma: Union[float, str]
+    scale: Union[str, Mapping[str, str]]
+    offset: str
     error: str
     degrees_of_freedom: float
     delay: Union[float, str]

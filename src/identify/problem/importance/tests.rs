@@ -50,6 +50,7 @@ fn analysed(
             x_column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
+            scaling: Default::default(),
         }],
         objectives: vec![("sse".into(), (FITNESSES[0].make)(&mut Options::default()).unwrap())],
         method_name: method.name.to_owned(),

@@ -269,6 +269,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         x_column: String::new(),
         rows: Vec::new(),
         missing: Vec::new(),
+        scaling: Default::default(),
     })
 }
 

@@ -81,14 +81,15 @@ pub fn bands(
     let (mut place, mut bands) = (0, Vec::new());
     for curve in curves.curves {
         let point = |(k, x): (usize, &f64)| {
-            let variance = local.information.variance_of(&linear.gradients[place + k]);
+            let (value, gradient) = (linear.values[place + k], &linear.gradients[place + k]);
+            let (value, variance) = local.point_of_curve(curve.series, value, gradient);
             let half = |variance: f64| local.quantile * variance.sqrt();
             let noise = curve.series.filter(|_| !local.robust);
             let noise = noise.and_then(|series| local.known_noise_at(problem, series, *x));
             let both = variance.zip(noise).map(|(variance, noise)| variance + noise * noise);
             BandPoint {
                 x: *x,
-                y: linear.values[place + k],
+                y: value,
                 confidence: variance.map(half),
                 prediction: both.map(half),
             }

@@ -127,6 +127,7 @@ pub fn bootstrap(
             parameters: &problem.parameters,
             measured: &data,
             scales: &scales,
+            relative: evaluation.relative(),
             noise: problem.noise,
         };
         data.fit(simulator, &local.values).filter(|fit| fit.converged).map(|fit| fit.values)

@@ -4,6 +4,7 @@
 //! Reference: [Nielsen 1999](gapilib_base::bibliography#nielsen-1999); the end is that of
 //! [Bates & Watts 1981](gapilib_base::bibliography#bates-watts-1981), the relative offset.
 
+use crate::problem::relative::{Compared, Relative, Scaled};
 use crate::problem::{Free, Simulate};
 use nalgebra::{DMatrix, DVector};
 
@@ -21,6 +22,8 @@ pub struct Data<'a> {
     pub measured: &'a [f64],
     /// What differences are multiplied with; 0 leaves a point out.
     pub scales: &'a [f64],
+    /// Scales and offsets that each simulation gets before it is compared.
+    pub relative: Option<&'a Relative>,
     /// Relative error of the simulation.
     pub noise: f64,
 }
@@ -76,7 +79,15 @@ impl Data<'_> {
     fn residuals(&self, simulator: &mut dyn Simulate, u: &[f64]) -> Option<DVector<f64>> {
         let mut row = vec![f64::NAN; self.measured.len()];
         simulator.simulate(&self.values(u), &mut row).ok()?;
+        if let Some(relative) = self.relative {
+            relative.apply(&self.scaled(relative, &row), &mut row);
+        }
         Some(self.weighted(&row))
+    }
+
+    fn scaled(&self, relative: &Relative, row: &[f64]) -> Scaled {
+        let (measured, weights) = (self.measured, self.scales);
+        relative.fit(row, Compared { measured, weights, are_final: true })
     }
 
     fn weighted(&self, row: &[f64]) -> DVector<f64> {
@@ -95,6 +106,11 @@ impl Data<'_> {
         let values = self.values(u);
         let (mut out, mut flat) = (vec![f64::NAN; points], vec![f64::NAN; points * n]);
         if simulator.sensitivities(&values, &mut out, &mut flat).ok()? {
+            if let Some(relative) = self.relative {
+                let scaled = self.scaled(relative, &out);
+                relative.scale_derivatives(&scaled, &mut flat);
+                relative.project(&scaled, &out, &mut flat);
+            }
             let unit: Vec<f64> = self
                 .parameters
                 .iter()

@@ -1,6 +1,7 @@
 //! The likelihood of a fit with normal errors.
 
 use crate::elementary;
+use crate::problem::explicit::Explicit;
 use crate::problem::{ErrorModel, Problem, Role, Run, Series, likelihood};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -82,7 +83,8 @@ impl Likelihood {
             Some(negative) => -negative,
             None => of_weights - of_residuals - 0.5 * n * elementary::ln(TAU),
         } - logarithms(problem);
-        let estimated = values.len() + deviations;
+        let relative = Explicit::without_columns(&run.evaluation, values);
+        let estimated = values.len() + deviations + relative.map_or(0, |own| own.count());
         let known_sigma = matches!(error_model, ErrorModel::Known | ErrorModel::Computed);
         let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
         log.is_finite().then_some(found)

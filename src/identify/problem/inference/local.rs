@@ -7,6 +7,7 @@
 //!
 //! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapters 5 and 6.
 
+use super::super::explicit::Explicit;
 use super::super::statistics::distributions::{normal_quantile, student_quantile};
 use super::super::{Evaluation, Problem, Statistics, limits};
 use crate::elementary;
@@ -53,6 +54,8 @@ pub struct Local {
     pub quantile: f64,
     /// The Fisher information.
     pub information: Information,
+    /// Scales and offsets of relative data, and the information of the parameters with them.
+    relative: Option<(Explicit, Information)>,
 }
 
 /// A Fisher information matrix and its inverse, in parameters scaled to unit diagonal.
@@ -84,6 +87,7 @@ impl Local {
         if !found.repeated.is_empty() {
             return Err("two series contain the same numbers");
         }
+        let relative = found.explicit.clone().zip(with_coefficients(&found));
         let Statistics { weights: scales, residuals, freedom, believed, variance, robust, .. } =
             found;
         if freedom <= 0.0 {
@@ -95,10 +99,7 @@ impl Local {
             return Err("the simulation fails near the best point");
         }
         let square = residuals.iter().map(|residual| residual * residual).sum::<f64>();
-        let size =
-            scales.iter().zip(&simulated).map(|(w, s)| elementary::powi(w * s, 2)).sum::<f64>();
-        let floor = elementary::powi(FROM_THE_SOLVER * problem.noise, 2) * size;
-        if !believed && square <= floor {
+        if !believed && square <= square_of_simulation(problem, &scales, &simulated) {
             return Err(
                 "the residuals are as small as the errors of the simulation, so the noise is \
                  unknown",
@@ -130,6 +131,7 @@ impl Local {
             robust,
             quantile: found.quantile,
             information,
+            relative,
         })
     }
 
@@ -137,6 +139,23 @@ impl Local {
     /// `noise`: relative error of the simulation.
     pub fn tolerance(noise: f64) -> f64 {
         elementary::powf(noise, 2.0 / 3.0).clamp(RANK[0], RANK[1])
+    }
+
+    /// The value of a point of a curve, scaled as its series is, and its variance; `None` where the data
+    /// leave it open.
+    pub(crate) fn point_of_curve(
+        &self,
+        series: Option<usize>,
+        value: f64,
+        gradient: &[f64],
+    ) -> (f64, Option<f64>) {
+        let scaled = self.relative.as_ref().zip(series).and_then(|((own, information), series)| {
+            own.scaled(series, value, gradient).map(|scaled| (scaled, information))
+        });
+        match scaled {
+            Some(((value, gradient), information)) => (value, information.variance_of(&gradient)),
+            None => (value, self.information.variance_of(gradient)),
+        }
     }
 
     /// The standard deviation of a measurement of series `series` at `x`: that of the measured
@@ -158,6 +177,34 @@ impl Local {
         let is_constant = scales.iter().all(|scale| *scale == scales[0]);
         (is_within || is_constant).then(|| self.noise_at(problem, series, x))
     }
+}
+
+/// The sum of squares that errors of the simulation make.
+fn square_of_simulation(problem: &Problem, scales: &[f64], simulated: &[f64]) -> f64 {
+    let size = scales.iter().zip(simulated).map(|(w, s)| elementary::powi(w * s, 2)).sum::<f64>();
+    elementary::powi(FROM_THE_SOLVER * problem.noise, 2) * size
+}
+
+/// The Fisher information of the parameters and of scales and offsets of relative data; `None` where
+/// there are none.
+pub fn with_coefficients(found: &Statistics) -> Option<Information> {
+    let (columns, tolerance) = found.explicit_columns()?;
+    let product = |a: usize, b: usize| -> f64 {
+        columns[a].iter().zip(&columns[b]).map(|(a, b)| a * b).sum()
+    };
+    let n = columns.len();
+    let gram = DMatrix::from_fn(n, n, |a, b| product(a, b) / found.variance);
+    gram.iter().all(|value| value.is_finite()).then(|| Information::new(&gram, tolerance))
+}
+
+/// Standard errors of scales and offsets; `None` where they are not determined.
+pub fn errors_of_coefficients(found: &Statistics) -> Vec<Option<f64>> {
+    let (Some(own), Some(information)) = (&found.explicit, with_coefficients(found)) else {
+        return Vec::new();
+    };
+    let all = information.variances();
+    let own = all[all.len() - own.count()..].iter();
+    own.map(|variance| variance.map(f64::sqrt).filter(|own| own.is_finite())).collect()
 }
 
 /// How far the Gauss-Newton step would move the weighted points, root mean square over the

@@ -34,11 +34,12 @@ pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
 pub use likelihood::{Likelihood, beside};
 pub use local::Local;
+pub(crate) use local::errors_of_coefficients;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, CurveRequest, Curves, ModelPredictions, Predict, Proposed, Reach};
 pub use term::{Function, Operator, Term};
 
-use super::{ErrorModel, FindingKind, Run, Solution};
+use super::{ErrorModel, FindingKind, Problem, Run, Solution};
 use crate::diag::Fault;
 
 /// The parts, as the reader of a report knows them.
@@ -111,17 +112,14 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
         };
         (found.bands, found.spectra) = parts.part(BANDS, make)?;
     }
-    let is_computed =
-        ErrorModel::of(&run.problem) == ErrorModel::Computed || !run.problem.is_normal();
-    if is_computed && requested.design.is_some() {
-        // What further points would tell of their deviations is not counted.
-        parts.refusals.push(
-            "There is no plan for the next measurement where the model computes the standard \
-             deviations, or where errors are not normal."
-                .to_owned(),
-        );
-    }
-    if let Some(settings) = requested.design.as_ref().filter(|_| !is_computed) {
+    let settings = requested.design.as_ref().filter(|_| match without_design(&run.problem) {
+        Some(why) => {
+            parts.refusals.push(format!("There is no plan for the next measurement {why}."));
+            false
+        }
+        None => true,
+    });
+    if let Some(settings) = settings {
         let make = |refusals: &mut Vec<String>| {
             design::next_measurement(&run.problem, settings, &local, refusals)
         };
@@ -135,6 +133,17 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
     found.refusals.append(&mut parts.refusals);
     found.refusals.append(&mut Inferred::stopped(parts.stopped).refusals);
     Ok(found)
+}
+
+/// Where there is no plan for the next measurement, in words that follow on it.
+fn without_design(problem: &Problem) -> Option<&'static str> {
+    if problem.series.iter().any(|own| !own.scaling.is_empty()) {
+        return Some("where scales or offsets are estimated: a new measurement may have others");
+    }
+    // What further points would tell of their deviations is not counted.
+    (ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal()).then_some(
+        "where the model computes the standard deviations, or where errors are not normal",
+    )
 }
 
 impl Inferred {
@@ -159,7 +168,14 @@ impl Inferred {
             let make = |refusals: &mut _| bootstrap::bootstrap(run, settings, local, refusals);
             self.bootstrap = parts.part(BOOTSTRAP, make)?;
         }
-        if let Some(settings) = &requested.posterior {
+        let is_relative = run.problem.series.iter().any(|own| !own.scaling.is_empty());
+        if is_relative && requested.posterior.is_some() {
+            parts.refusals.push(
+                "There is no posterior where scales or offsets are estimated: make them parameters of \
+                 the model, with ranges."
+                    .to_owned(),
+            );
+        } else if let Some(settings) = &requested.posterior {
             let make = |refusals: &mut _| posterior::posterior(run, settings, local, refusals);
             self.posterior = parts.part(POSTERIOR, make)?;
         }

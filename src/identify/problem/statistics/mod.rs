@@ -23,6 +23,7 @@ use at_bounds::AtBounds;
 pub(crate) use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
+use super::explicit::Explicit;
 use super::non_identifiable::{self, Form, NonIdentifiable, Rank};
 use super::sensitivities::Sensitivities;
 use super::separable::Combination;
@@ -100,6 +101,8 @@ pub struct Statistics {
     pub simulations: u64,
     /// What the square of each residual counts.
     pub(super) shares: Vec<f64>,
+    /// Scales and offsets of relative data.
+    pub(super) explicit: Option<Explicit>,
     /// What derivatives of the points are multiplied with to become sensitivities.
     scales: Vec<f64>,
     /// The weighted sum of squares, as the variance is estimated from it.
@@ -180,6 +183,7 @@ impl Statistics {
             cancelling: Vec::new(),
             jacobian,
             simulations,
+            explicit: Explicit::at(problem, evaluation, values, fineness),
             shares: data.shares.clone(),
             scales: data.scales.clone(),
             square: data.square,
@@ -223,7 +227,9 @@ impl Statistics {
         data: &Data,
         best: &Sensitivities,
     ) {
-        let spread = Spread::of(problem, evaluation, data, (&best.columns, self.open));
+        let explicit = self.explicit.as_ref().map(|own| weighted(&own.columns, &data.scales));
+        let columns = explicit.as_ref().unwrap_or(&best.columns);
+        let spread = Spread::of(problem, evaluation, data, (columns, self.open));
         self.uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
             true => uncertainty_given(&best.columns, spread.variance),
             false => None,
@@ -442,6 +448,20 @@ impl Statistics {
 }
 
 impl Statistics {
+    /// Weighted sensitivities by the parameters and by scales and offsets of relative data, and below
+    /// which part of the largest singular values are none.
+    pub(super) fn explicit_columns(&self) -> Option<(Vec<Vec<f64>>, f64)> {
+        let own = self.explicit.as_ref()?;
+        Some((weighted(&own.columns, &self.scales), self.rank_tolerance))
+    }
+
+    /// Whether a parameter that has no effect acts on the outputs, so that it is scales and offsets of
+    /// relative data that make up for it.
+    pub(super) fn is_made_up_for(&self, k: usize) -> bool {
+        let column = self.explicit.as_ref().and_then(|own| own.columns.get(k));
+        column.is_some_and(|own| own.iter().any(|d| *d != 0.0))
+    }
+
     /// Standard errors and correlations as they are reported: where parameters stand at ends of their
     /// ranges, those of the others with these held.
     pub(super) fn tabulated(&self) -> Option<&Uncertainty> {
@@ -596,7 +616,9 @@ impl Fine {
         let rank = |fine: &Fine| {
             non_identifiable::rank(&fine.best, &[], rank_tolerance(problem.noise * fine.fineness))
         };
-        if fineness >= 1.0 || rank(&coarse).non_identifiable.is_empty() {
+        let is_made_up = |column: &Vec<f64>| column.iter().all(|own| *own == 0.0);
+        let lacks = evaluation.relative().is_some() && coarse.jacobian.iter().any(is_made_up);
+        if fineness >= 1.0 || rank(&coarse).non_identifiable.is_empty() && !lacks {
             return coarse;
         }
         let row = evaluation.simulate_scaled(&[values.to_vec()], fineness).pop();
@@ -629,11 +651,14 @@ pub fn sensitivities(
         return (vec![vec![f64::NAN; problem.n_points()]; n], 1);
     };
     let size = found.simulated.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let made_up = rank_tolerance(problem.noise * fineness);
     let column = |k: usize| -> Vec<f64> {
         let free = &problem.parameters[k];
         let column: Vec<f64> = found.derivatives.iter().skip(k).step_by(n).copied().collect();
         let most = column.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        match most * (free.max - free.min) <= NO_EFFECT * size {
+        // What scales of relative data make up for.
+        let is_made_up = found.shares.get(k).is_some_and(|share| *share <= made_up);
+        match is_made_up || most * (free.max - free.min) <= NO_EFFECT * size {
             true => vec![0.0; column.len()],
             false => column,
         }

@@ -394,6 +394,7 @@ fn experiments(
         for (number, own) in laws.iter().enumerate() {
             let series = &mut all.series[first + number];
             super::inference::distribute(series, own).map_err(alone)?;
+            super::relative::check(file, entry, series, own.is_logarithmic).map_err(alone)?;
             all.logarithmic.extend(own.is_logarithmic.then_some((first + number, own.place)));
         }
         for own in built.undecided {
@@ -410,6 +411,9 @@ fn experiments(
         };
         return Err(one(fault!(BAD_OPTION, "{what}").help(remedy)));
     }
+    let logarithmic: Vec<usize> = all.logarithmic.iter().map(|own| own.0).collect();
+    let kept: Vec<&Series> = all.validation.iter().flat_map(|own| &own.1).collect();
+    super::relative::check_all(file, (&all.series, &logarithmic), &kept).map_err(alone)?;
     Ok(all)
 }
 

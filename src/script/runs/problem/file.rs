@@ -222,6 +222,9 @@ pub(super) struct ColumnEntry {
     pub weight: Option<WeightEntry>,
     /// Standard deviation of the measurement.
     pub sigma: Option<SigmaEntry>,
+    /// Of relative data, the scale and the offset of the simulation, which are estimated.
+    pub scale: Option<ScaleEntry>,
+    pub offset: Option<OffsetEntry>,
     /// How the errors are distributed: `normal`, `lognormal`, `laplace`, `loglaplace`, `student` or
     /// `poisson`.
     pub error: Option<String>,
@@ -236,6 +239,26 @@ pub(super) struct ColumnEntry {
     #[serde(skip)]
     pub tried: Option<f64>,
 }
+
+/// A scale that is estimated: `estimate`, a name that outputs share, or a table.
+#[derive(Debug, Clone)]
+pub(super) enum ScaleEntry {
+    Words(String),
+    More(ScaleTable),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScaleTable {
+    /// What outputs share it by.
+    pub name: Option<String>,
+    /// `positive` or `any`.
+    pub sign: Option<String>,
+}
+
+/// An offset that is estimated: `estimate`, or a name that outputs share.
+#[derive(Debug, Clone)]
+pub(super) struct OffsetEntry(pub String);
 
 /// A limit of measured values: a number, or the name of a column.
 #[derive(Debug, Clone)]
@@ -309,6 +332,17 @@ pub(super) enum OneOrMany {
     Many(Vec<String>),
     /// A name with settings: `{ name = "huber", delta = 2 }`.
     Set(FitnessEntry),
+}
+
+impl OneOrMany {
+    /// The names of all.
+    pub(super) fn names(&self) -> Vec<&str> {
+        match self {
+            OneOrMany::One(name) => vec![name],
+            OneOrMany::Many(names) => names.iter().map(String::as_str).collect(),
+            OneOrMany::Set(entry) => vec![&entry.name],
+        }
+    }
 }
 
 /// A fitness function or an operator with its settings.
@@ -499,6 +533,8 @@ impl ColumnEntry {
             interpolation: None,
             weight: None,
             sigma: None,
+            scale: None,
+            offset: None,
             error: None,
             below: None,
             above: None,

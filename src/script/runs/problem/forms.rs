@@ -3,8 +3,9 @@
 
 use super::file::{
     BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, LimitEntry, NoiseEntry, NoiseTable,
-    OneOrMany, OperatorEntry, ParameterEntry, ParameterTable, PriorEntry, PriorNumbers,
-    SegmentsEntry, SetEntry, SigmaEntry, ValueEntry, WeightEntry,
+    OffsetEntry, OneOrMany, OperatorEntry, ParameterEntry, ParameterTable, PriorEntry,
+    PriorNumbers, ScaleEntry, ScaleTable, SegmentsEntry, SetEntry, SigmaEntry, ValueEntry,
+    WeightEntry,
 };
 use indexmap::IndexMap;
 use serde::de::value::MapAccessDeserializer;
@@ -209,6 +210,26 @@ in_forms!(
         truth: Some(BandsEntry::Requested),
         list: Some(BandsEntry::Variables),
         ..Forms::new("`true`, `false`, or a list of variables")
+    }
+);
+
+in_forms!(
+    ScaleEntry,
+    Forms::<_, ScaleTable> {
+        text: Some(ScaleEntry::Words),
+        table: Some(ScaleEntry::More),
+        ..Forms::new(
+            "\"estimate\", a name that outputs share, or a table such as `{ name = \"s1\", sign = \
+             \"any\" }`; what is known is a `factor` of the data",
+        )
+    }
+);
+
+in_forms!(
+    OffsetEntry,
+    Forms::<_> {
+        text: Some(OffsetEntry),
+        ..Forms::new("\"estimate\", or a name that outputs share")
     }
 );
 

@@ -119,7 +119,8 @@ pub(super) fn all(experiments: &[ExperimentEntry]) -> Vec<Changed> {
         for (name, column) in &experiment.inputs {
             add(Role::Input, name, &column.entry(), &COLUMNS);
         }
-        for (name, column) in experiment.all_outputs() {
+        // An estimated scale makes up for any factor.
+        for (name, column) in experiment.all_outputs().filter(|own| own.1.scale.is_none()) {
             add(Role::Output, name, &column, &COLUMNS);
         }
     }

@@ -46,6 +46,7 @@ mod petab;
 mod places;
 mod record;
 mod refusal;
+mod relative;
 mod rest;
 mod search;
 mod searches;
@@ -655,7 +656,9 @@ fn validated(
         for series in series {
             let (own, others) = rest.split_at(series.x.len());
             if series.is_data() {
-                solved.push(SolvedSeries::new(series, own));
+                let mut own = own.to_vec();
+                run.evaluation.scale_as_fitted(&best.values, series, &mut own);
+                solved.push(SolvedSeries::new(series, &own));
             }
             rest = others;
         }

@@ -111,6 +111,8 @@ fn check_experiment(entry: &ExperimentEntry) -> Result<(), Diagnostic> {
         for (is_there, key, what) in [
             (output.delay.is_some(), "delay", "a delay"),
             (output.weight.is_some(), "weight", "a weight"),
+            (output.scale.is_some(), "scale", "a scale that is not a parameter"),
+            (output.offset.is_some(), "offset", "an offset that is not a parameter"),
             (output.below.is_some(), "below", "a limit of detection"),
             (output.above.is_some(), "above", "a limit of saturation"),
         ] {

@@ -169,6 +169,9 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     Ok(entry)
 }
 
+/// What follows a scale that may be negative.
+const ANY_SIGN: &str = " of any sign";
+
 /// The outputs of an experiment; a sigma of 0 is not known.
 fn outputs(fields: &Fields<'_>) -> Result<Table, Fault> {
     let names: Vec<String> = fields.get("outputs")?;
@@ -177,6 +180,8 @@ fn outputs(fields: &Fields<'_>) -> Result<Table, Fault> {
     let sigmas: Vec<f64> = fields.of_outputs("sigmas", &names)?;
     let deviations: Vec<String> = fields.of_outputs("deviations", &names)?;
     let errors: Vec<String> = fields.of_outputs("errors", &names)?;
+    let scales: Vec<String> = fields.of_outputs("scales", &names)?;
+    let offsets: Vec<String> = fields.of_outputs("offsets", &names)?;
     let degrees: Vec<f64> = fields.of_outputs("degreesOfFreedom", &names)?;
     let mut outputs = Table::new();
     for (k, name) in names.iter().enumerate() {
@@ -189,6 +194,15 @@ fn outputs(fields: &Fields<'_>) -> Result<Table, Fault> {
         put_number(&mut output, "sigma", sigmas[k]);
         put_text(&mut output, "sigma", deviations[k].clone());
         put_text(&mut output, "error", errors[k].clone());
+        put_text(&mut output, "offset", offsets[k].clone());
+        match scales[k].strip_suffix(ANY_SIGN) {
+            None => put_text(&mut output, "scale", scales[k].clone()),
+            Some(name) => {
+                let sign = [("name", name.trim_end()), ("sign", "any")];
+                let sign = sign.into_iter().map(|(key, word)| (key.to_owned(), Entry::from(word)));
+                put(&mut output, "scale", sign.collect::<Table>());
+            }
+        }
         put_number(&mut output, "degrees_of_freedom", degrees[k]);
         put(&mut outputs, name, output);
     }

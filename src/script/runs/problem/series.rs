@@ -4,7 +4,7 @@
 use super::data::{self, Measured, Notes};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry, LimitEntry, SigmaEntry};
-use super::{sigma, time_axis};
+use super::{relative, sigma, time_axis};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
 use crate::identify::fitness::Law;
@@ -139,18 +139,17 @@ impl Comparison<'_> {
         requested: &ColumnEntry,
         notes: &mut Notes,
     ) -> Result<Series, Fault> {
-        let (table, own_unit) = (self.table, self.unit(y_name));
+        let table = self.table;
         let column = data::column(table, requested, y_name, notes)?;
         note_suspicious(requested.column.as_deref().unwrap_or(y_name), &column, (table, notes));
+        let scaling = relative::scaling(requested, (self.experiment, y_name))?;
+        let own_unit = self.unit_of_output(y_name, requested, &column);
         let measured = data::in_unit(&column, y_name, &own_unit, requested, (table, notes))?;
         let unit = &own_unit.symbol;
         note_unit_of_sigma(y_name, requested, (&measured, unit), notes);
         let count = measured.values.len();
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
-        let factor =
-            data::sigma_factor(table, requested.sigma.as_ref(), &own_unit, measured.factor);
-        let of = (y_name, self.model);
-        let sigma = sigma::sigma(requested.sigma.as_ref(), of, table, factor, count)?;
+        let sigma = self.sigma(y_name, requested, (&own_unit, &measured))?;
         let measured_in = |row: &usize| {
             self.x.get(*row).is_some_and(|x| x.is_finite()) && measured.values[*row].is_finite()
         };
@@ -168,9 +167,9 @@ impl Comparison<'_> {
         if rows.is_empty() {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
         }
-        let values = rows.iter().map(|row| measured.values[*row]);
-        note_temperature((y_name, "outputs"), &own_unit, (requested, &column), values, notes);
-        note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
+        let values = || rows.iter().map(|row| measured.values[*row]);
+        note_temperature((y_name, "outputs"), &own_unit, (requested, &column), values(), notes);
+        note_constant(y_name, values(), notes);
         let (y, censored) = self.censored(y_name, requested, (&rows, &measured))?;
         Ok(Series {
             role: Role::Data,
@@ -186,12 +185,40 @@ impl Comparison<'_> {
             relative: Vec::new(),
             sigma,
             law: Law::Normal,
+            scaling,
             censored,
             column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
             x_column: self.x_column.to_owned(),
             rows: rows.iter().map(|row| first_row + row).collect(),
             missing: missing.iter().map(|row| first_row + row).collect(),
         })
+    }
+
+    /// The standard deviations of all rows, in the unit of the output.
+    fn sigma(
+        &self,
+        y_name: &str,
+        requested: &ColumnEntry,
+        (unit, measured): (&VariableUnit, &Measured),
+    ) -> Result<Sigma, Fault> {
+        let (entry, count) = (requested.sigma.as_ref(), measured.values.len());
+        let factor = data::sigma_factor(self.table, entry, unit, measured.factor);
+        sigma::sigma(entry, (y_name, self.model), self.table, factor, count)
+    }
+
+    /// The unit in which an output is compared; arbitrary units are those of the data, as they are.
+    fn unit_of_output(
+        &self,
+        y_name: &str,
+        requested: &ColumnEntry,
+        column: &Column,
+    ) -> VariableUnit {
+        let own = self.unit(y_name);
+        if requested.scale.is_none() {
+            return own;
+        }
+        let given = requested.unit.clone().or_else(|| column.about.unit.clone());
+        VariableUnit { symbol: given.unwrap_or_default(), ..own }
     }
 
     /// Over time, the rows that can be compared with the simulation: those since it begins, and of
