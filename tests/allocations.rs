@@ -258,6 +258,7 @@ fn curve(evaluations: u64) -> Problem {
             rows: Vec::new(),
             missing: Vec::new(),
             scaling: Default::default(),
+            joint: None,
         }],
         objectives: vec![(
             "sse".to_owned(),

@@ -13,6 +13,9 @@ record Experiment "An experiment of a problem: what was measured, and under whic
   String scales[:] = fill("", 0) "Of relative data, scales that are estimated: estimate, a name that outputs share, or either with ' of any sign'; empty for none";
   String offsets[:] = fill("", 0) "Offsets that are estimated: estimate, or a name that outputs share; empty for none";
   Real degreesOfFreedom[:] = fill(0.0, 0) "Those of student; 0, or none, for 4";
+  Real covariance[:,:] = fill(0.0, 0, 0) "Covariance of the errors of the outputs at one instant; empty for none";
+  Real correlation[:,:] = fill(0.0, 0, 0) "In place of covariance: correlations, where the outputs have sigmas";
+  String estimatedCovariance = "" "In place of both: estimate, or a name that experiments with the same covariance share";
   String inputs[:] = fill("", 0) "Inputs of the model that follow columns of the data";
   String inputColumns[:] = inputs "Their columns";
   String settings[:] = fill("", 0) "Parameters that have other values in this experiment";

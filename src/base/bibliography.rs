@@ -244,6 +244,20 @@
 //! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
 //!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.
 //!
+//! <a id="box-draper-1965"></a>
+//! - **box-draper-1965** — G. E. P. Box, N. R. Draper: The Bayesian estimation of common parameters
+//!   from several responses. Biometrika 52(3/4), 1965, 355–365.
+//!
+//! <a id="dempster-laird-rubin-1977"></a>
+//! - **dempster-laird-rubin-1977** — A. P. Dempster, N. M. Laird, D. B. Rubin: Maximum likelihood
+//!   from incomplete data via the EM algorithm. Journal of the Royal Statistical Society B 39(1),
+//!   1977, 1–38.
+//!
+//! <a id="rao-1967"></a>
+//! - **rao-1967** — C. R. Rao: Least squares theory using an estimated dispersion matrix and its
+//!   application to measurement of signals. Proceedings of the Fifth Berkeley Symposium on
+//!   Mathematical Statistics and Probability 1, 1967, 355–372.
+//!
 //! <a id="bates-watts-1988"></a>
 //! - **bates-watts-1988** — D. M. Bates, D. G. Watts: Nonlinear Regression Analysis and Its
 //!   Applications. Wiley, 1988.

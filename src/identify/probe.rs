@@ -461,6 +461,7 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         rows: Vec::new(),
         missing: Vec::new(),
         scaling: Default::default(),
+        joint: None,
     })
 }
 

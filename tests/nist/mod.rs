@@ -189,6 +189,7 @@ impl Dataset {
             rows: Vec::new(),
             missing: Vec::new(),
             scaling: Default::default(),
+            joint: None,
         }
     }
 

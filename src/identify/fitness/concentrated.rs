@@ -19,10 +19,14 @@
 //! κ² = N / (Σ_given uᵢ² + Σ_g n_g + Σ_computed (uᵢ² + ½ (uᵢ² - 1)²)), near 1 where the deviations
 //! hold. The factors give the Fisher information: 2/σᵢ² of a deviation.
 //!
+//! Outputs whose errors at one instant are correlated are in `joint.rs`.
+//!
 //! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 2.2 and chapter 11.
 
+use super::joint::{JointGroup, JointScales, Whitening};
 use super::{Fitness, Law, checked};
 use crate::elementary;
+use nalgebra::DMatrix;
 
 /// Exponents beyond this are those of models that miss the measurements by ten of their deviations
 /// and more, as without the noise of a process; the exponential function overflows beyond 709.
@@ -57,6 +61,8 @@ pub(crate) enum Deviation {
     Given,
     /// Estimated, that of the group with this number.
     Group(usize),
+    /// That of this output of a group with correlated errors.
+    Joint(usize, usize),
     /// Computed by the model: the simulated value of the point with this number.
     Computed(usize),
     /// The point is itself the deviation of the point with this number.
@@ -69,6 +75,8 @@ pub(crate) struct Concentrated {
     points: Vec<(Law, Deviation)>,
     /// The groups.
     groups: Vec<Group>,
+    /// Groups of outputs with correlated errors.
+    joints: Vec<JointGroup>,
     /// Points that are measured.
     n_measured: f64,
 }
@@ -95,6 +103,8 @@ struct Scales {
     computed: f64,
     /// Σ of the squares of the residuals of those, by G κ².
     computed_squares: f64,
+    /// Those of outputs with correlated errors.
+    joints: Vec<JointScales>,
 }
 
 impl Concentrated {
@@ -107,7 +117,7 @@ impl Concentrated {
             match own {
                 Deviation::Group(group) => groups[*group].count += law.densities(),
                 Deviation::Of(_) => continue,
-                Deviation::Given | Deviation::Computed(_) => {}
+                Deviation::Given | Deviation::Computed(_) | Deviation::Joint(..) => {}
             }
             n_measured += 1.0;
         }
@@ -117,17 +127,33 @@ impl Concentrated {
             let is_normal = own.clone().all(|(_, (law, _))| *law == Law::Normal);
             group.searched = if is_normal { Vec::new() } else { own.map(|own| own.0).collect() };
         }
-        Concentrated { points, groups, n_measured }
+        Concentrated { points, groups, joints: Vec::new(), n_measured }
+    }
+
+    /// The same with groups of outputs with correlated errors.
+    pub fn with_joints(self, joints: Vec<JointGroup>) -> Concentrated {
+        Concentrated { joints, ..self }
+    }
+
+    /// Groups of outputs with correlated errors at a simulation.
+    fn joint_scales(&self, [simulated, measured, weights]: [&[f64]; 3]) -> Vec<JointScales> {
+        if self.joints.is_empty() {
+            return Vec::new();
+        }
+        let residuals: Vec<f64> = super::differences(simulated, measured, weights).collect();
+        self.joints.iter().map(|joint| joint.scales(&residuals)).collect()
     }
 
     /// Those of a simulation; with corners of densities rounded off, as steps of least squares need it.
     fn scales(&self, [simulated, measured, weights]: [&[f64]; 3], is_rounded: bool) -> Scales {
+        let joints = self.joint_scales([simulated, measured, weights]);
         let mut scales = Scales {
             given: 0.0,
-            given_squares: 0.0,
+            given_squares: joints.iter().map(|own| own.square).sum(),
             variance: vec![0.0; self.groups.len()],
             computed: 0.0,
             computed_squares: 0.0,
+            joints,
         };
         let twice = |law: Law, u: f64| if is_rounded { law.rounded(u) } else { law.twice(u) };
         let differences = super::differences(simulated, measured, weights);
@@ -155,7 +181,7 @@ impl Concentrated {
                     let of_scale = excess * excess / law.information_of_scale();
                     scales.computed_squares += law.square(own, is_rounded) + of_scale;
                 }
-                Deviation::Of(_) => {}
+                Deviation::Of(_) | Deviation::Joint(..) => {}
             }
         }
         for (variance, group) in scales.variance.iter_mut().zip(&self.groups) {
@@ -183,7 +209,12 @@ impl Concentrated {
     fn exponent(&self, scales: &Scales) -> f64 {
         let groups = scales.variance.iter().zip(&self.groups);
         let of_groups = groups.map(|(variance, own)| own.count * elementary::ln(*variance));
-        scales.given + scales.computed + of_groups.sum::<f64>()
+        let of_joint = |(scales, own): (&JointScales, &JointGroup)| {
+            let expected = if own.given.is_none() { own.count() } else { 0.0 };
+            scales.log_determinants + scales.square - expected
+        };
+        let of_joints: f64 = scales.joints.iter().zip(&self.joints).map(of_joint).sum();
+        scales.given + scales.computed + of_groups.sum::<f64>() + of_joints
     }
 }
 
@@ -224,7 +255,9 @@ impl Fitness for Concentrated {
         let is_normal = |law: Law| law == Law::Normal;
         let others = of_points.clone().filter(|(_, (law, _))| !is_normal(*law));
         let others = others.map(|((_, y), (law, _))| law.constant(*y) - Law::Normal.constant(*y));
+        let estimated = self.joints.iter().filter(|own| own.given.is_none());
         let constant: f64 = self.groups.iter().map(|own| own.count).sum::<f64>()
+            + estimated.map(JointGroup::count).sum::<f64>()
             + self.n_measured * Law::Normal.constant(0.0)
             - 2.0 * densities.map(|((w, _), _)| elementary::ln(*w)).sum::<f64>()
             + others.sum::<f64>();
@@ -267,7 +300,17 @@ impl Fitness for Concentrated {
             };
             factors[k] = root / per * weights[k] / own * factor;
         }
+        whitening(&scales.joints).apply(residuals);
         true
+    }
+
+    fn whitening(&self, compared: [&[f64]; 3]) -> Option<Whitening> {
+        let all = self.joint_scales(compared);
+        (!all.is_empty()).then(|| whitening(&all))
+    }
+
+    fn covariances(&self, compared: [&[f64]; 3]) -> Vec<DMatrix<f64>> {
+        self.joint_scales(compared).into_iter().map(|own| own.covariance).collect()
     }
 
     fn error_weights(
@@ -294,10 +337,19 @@ impl Concentrated {
         match self.points[k] {
             (Law::Poisson, _) => weights[k] * root_of_count(simulated[k]),
             (_, Deviation::Group(group)) => scales.variance[group].sqrt(),
+            (_, Deviation::Joint(joint, member)) => {
+                scales.joints[joint].covariance[(member, member)].sqrt()
+            }
             (_, Deviation::Computed(at)) => simulated[at],
             (_, Deviation::Given | Deviation::Of(_)) => 1.0,
         }
     }
+}
+
+fn whitening(joints: &[JointScales]) -> Whitening {
+    let mut found = Whitening::default();
+    joints.iter().for_each(|own| found.add(own));
+    found
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Fitness functions: how far the simulation is from the measurement; smaller is better.
 
 mod concentrated;
+mod joint;
 mod law;
 mod log_likelihood;
 mod normalized;
@@ -10,6 +11,8 @@ mod root_mean_square;
 mod sum_of_squares;
 
 pub(crate) use concentrated::{Concentrated, Deviation, raised};
+pub(crate) use joint::JointGroup;
+pub use joint::Whitening;
 pub use law::Law;
 pub use sum_of_squares::sum_of_squares;
 
@@ -29,7 +32,8 @@ pub trait Fitness: Send + Sync {
     /// Where the minimum is that of a sum of squares whose factors depend on the simulation:
     /// writes residuals r with Σ r² growing with the fitness, and factors f such that
     /// 2 Σ f r ∂ŷ/∂p is the gradient of Σ r². `false`: the constant factors of
-    /// [`least_squares`](Fitness::least_squares) hold.
+    /// [`least_squares`](Fitness::least_squares) hold. Derivatives that have been multiplied with the
+    /// factors then pass [`whitening`](Fitness::whitening), which the residuals have passed.
     fn scaled(
         &self,
         [_simulated, _measured, _weights]: [&[f64]; 3],
@@ -48,6 +52,17 @@ pub trait Fitness: Send + Sync {
         _weights: &[f64],
     ) -> Option<Vec<f64>> {
         None
+    }
+
+    /// What makes residuals in units of their standard deviations uncorrelated, where errors of several
+    /// points are correlated.
+    fn whitening(&self, _compared: [&[f64]; 3]) -> Option<Whitening> {
+        None
+    }
+
+    /// The covariances of the groups of points whose errors are correlated, in units of their weights.
+    fn covariances(&self, _compared: [&[f64]; 3]) -> Vec<nalgebra::DMatrix<f64>> {
+        Vec::new()
     }
 
     /// The same function with the standard deviation of the weighted differences known; `None`

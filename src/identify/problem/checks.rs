@@ -614,7 +614,8 @@ fn common_errors(problem: &Problem, all: &[Own<'_>], alpha: f64) -> Vec<Finding>
         let p = student_two_sided(t, freedom);
         let sentence = format!(
             "The residuals of {} and {} are correlated ({}): the two outputs have errors in common, \
-             but count as independent, so that standard errors are too small.",
+             but count as independent, so that standard errors are too small. The entry \
+             `covariance = \"estimate\"` of the experiment counts them together.",
             a.label,
             b.label,
             significant(correlation, 2)

@@ -198,11 +198,8 @@ impl Within {
 
 /// Standard errors with parameter `k` held.
 fn deviations(jacobian: &[Vec<f64>], statistics: &Statistics, k: usize) -> Vec<f64> {
-    let others = jacobian.iter().enumerate().filter(|(j, _)| *j != k);
-    let weighted = |(_, column): (usize, &Vec<f64>)| {
-        column.iter().zip(&statistics.weights).map(|(d, w)| d * w).collect::<Vec<f64>>()
-    };
-    let columns: Vec<Vec<f64>> = others.map(weighted).collect();
+    let mut columns = statistics.weighted(jacobian);
+    columns.remove(k);
     let found = uncertainty_given(&columns, statistics.variance);
     let mut all =
         found.map_or_else(|| vec![f64::INFINITY; columns.len()], |found| found.standard_deviations);

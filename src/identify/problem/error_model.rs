@@ -1,6 +1,6 @@
 //! The standard deviations of the measurements: given, a formula of the output, or estimated.
 
-use super::{Finding, FindingKind, Problem, Role, Series, Severity};
+use super::{Finding, FindingKind, Problem, Role, Series, Severity, joint};
 use crate::diag::Fault;
 use crate::fault;
 use crate::fitness::{Concentrated, Deviation, Fitness};
@@ -124,7 +124,9 @@ impl ErrorModel {
 
 /// Whether the likelihood of series is not a sum of squares though no deviation is estimated.
 fn is_computed(series: &[Series]) -> bool {
-    series.iter().any(|own| matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal())
+    let is_given = |own: &Series| own.joint.is_some() && !own.sigma.is_estimated();
+    let is_other = |own: &Series| matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal();
+    series.iter().any(|own| is_other(own) || is_given(own))
 }
 
 /// Decides about the series without sigma: where sigmas of others are given, or units differ, they
@@ -186,8 +188,9 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
     let mut names: Vec<&str> = Vec::new();
     let (mut points, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
     let firsts = firsts(series);
+    let joints = joint::groups(series);
     for (k, own) in series.iter().enumerate() {
-        let group = own.deviation().map(|deviation| {
+        let group = own.deviation().filter(|_| own.joint.is_none()).map(|deviation| {
             names.iter().position(|name| *name == deviation).unwrap_or_else(|| {
                 names.push(deviation);
                 sizes.push(Vec::new());
@@ -202,7 +205,12 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
             sizes[group].extend(measured.map(|point| weights[point] * own.y[point]));
         }
         let computed = (k..series.len()).find(|of| series[*of].role == Role::Deviation(of - k));
+        let in_joint = own.joint.as_ref().and_then(|joint| {
+            let number = joints.iter().position(|(name, _)| *name == joint.group)?;
+            Some(Deviation::Joint(number, joint.member))
+        });
         points.extend((0..own.y.len()).map(|point| match (own.role, computed, group) {
+            _ if let Some(joint) = in_joint => (own.law_of(point), joint),
             (Role::Deviation(back), ..) => {
                 (series[k - back].law_of(point), Deviation::Of(firsts[k - back] + point))
             }
@@ -225,5 +233,7 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, (St
         let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
         (FLOOR * noise * square.sqrt()).max(1e-150)
     };
-    Ok(Box::new(Concentrated::new(points, sizes.iter().map(floor).collect())))
+    let groups = joints.iter().map(|(_, members)| joint::group(series, members, FLOOR * noise));
+    let all = Concentrated::new(points, sizes.iter().map(floor).collect());
+    Ok(Box::new(all.with_joints(groups.collect())))
 }

@@ -5,10 +5,12 @@ use super::relative::{Compared, Relative, Scaled};
 use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
 use crate::elementary;
+use crate::fitness::Whitening;
 use crate::ga::optimizer::Required;
 use crate::ga::{Genomes, has_failed};
 use crate::ranks::{Asked, Batch, Processors, Simulation};
 use crate::simulators::Simulators;
+use nalgebra::DMatrix;
 use rustc_hash::FxHashMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -236,10 +238,32 @@ impl Evaluation {
         let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
         self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
         let rows = found.derivatives.chunks_exact(values.len()).zip(&scales);
-        rows.flat_map(|(row, scale)| {
-            row.iter().zip(&range_derivatives).map(move |(d, s)| d * s * scale)
-        })
-        .collect()
+        let mut weighted: Vec<f64> = rows
+            .flat_map(|(row, scale)| {
+                row.iter().zip(&range_derivatives).map(move |(d, s)| d * s * scale)
+            })
+            .collect();
+        if let Some(whitening) = self.whitening(problem, &found.simulated) {
+            whitening.apply_to_rows(&mut weighted, values.len());
+        }
+        weighted
+    }
+
+    /// What makes weighted residuals and their derivatives uncorrelated.
+    pub(super) fn whitening(&self, problem: &Problem, simulated: &[f64]) -> Option<Whitening> {
+        let fitness = &problem.objectives.first()?.1;
+        fitness.whitening([simulated, &self.measured, &self.weights])
+    }
+
+    /// The correlations of the groups of series whose errors are correlated.
+    pub(super) fn correlations(&self, problem: &Problem, simulated: &[f64]) -> Vec<DMatrix<f64>> {
+        let Some((_, fitness)) = problem.objectives.first() else { return Vec::new() };
+        let all = fitness.covariances([simulated, &self.measured, &self.weights]).into_iter();
+        let correlation = |own: DMatrix<f64>| {
+            let size = |a: usize, b: usize| (own[(a, a)] * own[(b, b)]).sqrt();
+            DMatrix::from_fn(own.nrows(), own.ncols(), |a, b| own[(a, b)] / size(a, b))
+        };
+        all.map(correlation).collect()
     }
 
     fn without(&self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
@@ -506,6 +530,9 @@ impl Evaluation {
         let weights = self.error_weights(problem, simulated);
         let points = self.measured.iter().zip(simulated).zip(&weights);
         let mut residuals: Vec<f64> = points.map(|((m, s), w)| w * (m - s)).collect();
+        if let Some(whitening) = self.whitening(problem, simulated) {
+            whitening.apply(&mut residuals);
+        }
         let mut first = 0;
         for (k, series) in problem.series.iter().enumerate() {
             if let super::Role::Deviation(back) = series.role {

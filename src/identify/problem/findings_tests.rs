@@ -79,6 +79,7 @@ fn problem(
         rows: Vec::new(),
         missing: Vec::new(),
         scaling: Default::default(),
+        joint: None,
     });
     let series: Vec<Series> = series.collect();
     let objective = match fitness {

@@ -30,6 +30,7 @@ mod importance;
 pub mod inference;
 mod innovations;
 mod jacobian;
+mod joint;
 mod journal;
 mod limits;
 mod linearization;
@@ -83,6 +84,7 @@ pub use importance::{Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred, SpectrumBand};
 pub(crate) use innovations::Periodogram;
 pub use innovations::{NOISE_OF, NoiseComparison};
+pub use joint::{Joint, SolvedCovariance};
 pub use journal::{
     Entry, Journal, Record, begin, decode, encode, header, is_of_another_version, without_times,
 };
@@ -108,6 +110,7 @@ pub use space::Free;
 pub use states::SolvedState;
 pub use statistics::Statistics;
 pub(crate) use statistics::{ResidualTest, distributions, residual_test};
+pub(crate) use text::covariance_line;
 pub use text::modelica_number;
 pub(crate) use unpacked::unpacked;
 
@@ -207,6 +210,8 @@ pub struct Series {
     pub law: Law,
     /// What is estimated of its units.
     pub scaling: Scaling,
+    /// With which other series its errors are correlated.
+    pub joint: Option<Joint>,
     /// The points of which only a limit was measured, Y, with [`Law::Below`] or [`Law::Above`].
     pub censored: Vec<(usize, Law)>,
     /// The column of the data that Y was read from.
@@ -251,6 +256,7 @@ impl Series {
         Series {
             role: Role::Deviation(back),
             scaling: Scaling::default(),
+            joint: None,
             y_name: name.to_owned(),
             y: vec![0.0; self.y.len()],
             sigma: Sigma::Given(vec![1.0; self.y.len()]),
@@ -356,6 +362,8 @@ impl Problem {
 mod findings_tests;
 #[cfg(test)]
 mod irregular_tests;
+#[cfg(test)]
+mod joint_tests;
 #[cfg(test)]
 mod stopping_tests;
 #[cfg(test)]

@@ -193,10 +193,15 @@ impl<'a> Refit<'a> {
             self.simulations += found.simulations;
             let (mut residuals, mut factors) = (vec![0.0; self.n_points], vec![0.0; self.n_points]);
             self.evaluation.scaled(self.problem, &found.simulated, &mut residuals, &mut factors);
+            let mut own = Vec::new();
             for (row, scale) in found.derivatives.chunks_exact(n).zip(&factors) {
                 let derivative = |k: usize| self.problem.parameters[k].derivative(place[k]);
-                jacobians.extend(varied.iter().map(|&k| row[k] * scale * derivative(k)));
+                own.extend(varied.iter().map(|&k| row[k] * scale * derivative(k)));
             }
+            if let Some(whitening) = self.evaluation.whitening(self.problem, &found.simulated) {
+                whitening.apply_to_rows(&mut own, varied.len());
+            }
+            jacobians.append(&mut own);
         }
         jacobians
     }

@@ -109,6 +109,9 @@ pub struct Likelihood {
     /// deviations (maximum likelihood ones); `None` where the fitness is not one of normal errors.
     #[serde(default)]
     pub negative_log_likelihood: Option<f64>,
+    /// The covariances of outputs with correlated errors.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub covariances: Vec<super::SolvedCovariance>,
 }
 
 /// How a search ended.

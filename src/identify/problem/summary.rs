@@ -63,6 +63,7 @@ impl Solution {
                 degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
                 chi_square: chi_square(problem, &statistics),
                 negative_log_likelihood: negative_log_likelihood(run, &statistics),
+                covariances: covariances(run, &statistics, &simulated),
             },
             ..searched(run, stop)
         };
@@ -344,13 +345,26 @@ fn effects(
 
 fn chi_square(problem: &super::Problem, statistics: &Statistics) -> Option<ChiSquare> {
     // Deviations that follow the parameters are fitted to the residuals.
-    if !statistics.believed || ErrorModel::of(problem) == ErrorModel::Computed {
+    let is_given = |own: &super::Series| {
+        own.is_normal() && own.sigma.is_known() && !matches!(own.sigma, Sigma::Variable(_))
+    };
+    if !statistics.believed || !problem.series.iter().all(is_given) {
         return None;
     }
     let value = statistics.chi_square(problem, &[]);
     let freedom = statistics.freedom;
     let [_, probability] = chi_square_tails(value, freedom);
     (freedom > 0.0).then_some(ChiSquare { value, freedom, probability })
+}
+
+/// The covariances of outputs with correlated errors.
+fn covariances(
+    run: &Run,
+    statistics: &Statistics,
+    simulated: &[f64],
+) -> Vec<super::SolvedCovariance> {
+    let correlations = run.evaluation.correlations(&run.problem, simulated);
+    super::joint::solved(&run.problem.series, &statistics.weights, &correlations)
 }
 
 fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {

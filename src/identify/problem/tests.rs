@@ -6,7 +6,7 @@ use crate::ga::optimizer::METHODS;
 use crate::registry::{self, Options};
 
 /// y = f(parameters, x) at the points.
-struct Formula(Vec<f64>, fn(&[f64], f64) -> f64);
+pub(super) struct Formula(pub Vec<f64>, pub fn(&[f64], f64) -> f64);
 
 impl Simulate for Formula {
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
@@ -49,6 +49,7 @@ pub(super) fn problem(
         rows: Vec::new(),
         missing: Vec::new(),
         scaling: Default::default(),
+        joint: None,
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, method).unwrap();

@@ -1,8 +1,8 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
 use super::{
-    EndingKind, ScriptError, Solution, SolvedCoefficient, SolvedParameter, SolvedSeries, Verdict,
-    planes,
+    EndingKind, ScriptError, Solution, SolvedCoefficient, SolvedCovariance, SolvedParameter,
+    SolvedSeries, Verdict, planes,
 };
 use crate::Descriptions;
 use crate::plot::{self, Comparison, Figure};
@@ -87,6 +87,8 @@ impl Solution {
         ]);
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
+        let covariances = self.likelihood.covariances.iter();
+        facts.extend(covariances.map(|own| ("covariance", covariance_line(own))));
         if let Some(chi) = &self.likelihood.chi_square {
             let text = format!(
                 "{} for {} degrees of freedom, p-value {}",
@@ -410,6 +412,27 @@ fn series_line(series: &SolvedSeries) -> String {
             significant(expected, 3),
             significant(autocorrelation, 2)
         );
+    }
+    line
+}
+
+/// Standard deviations and correlations of outputs.
+pub(crate) fn covariance_line(own: &SolvedCovariance) -> String {
+    let how = if own.estimated { "estimated" } else { "given" };
+    let mut line = own.experiments.join(", ");
+    let sigmas = own.outputs.iter().zip(&own.sigmas);
+    let sigmas: Vec<String> =
+        sigmas.map(|(name, sigma)| format!("{name} {}", significant(*sigma, 4))).collect();
+    _ = write!(line, ": sigma ({how}) {}", sigmas.join(", "));
+    for (a, row) in own.correlations.iter().enumerate() {
+        for (b, value) in row.iter().enumerate().take(a) {
+            let pair = [&own.outputs[b], &own.outputs[a]];
+            _ = write!(line, "; correlation of {} and {} ", pair[0], pair[1]);
+            line.push_str(&significant(*value, 4));
+        }
+    }
+    if own.incomplete > 0 {
+        _ = write!(line, "; {} of {} rows lack an output", own.incomplete, own.rows);
     }
     line
 }

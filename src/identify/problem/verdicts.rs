@@ -517,7 +517,8 @@ fn is_without_noise(run: &Run, statistics: &Statistics) -> bool {
 /// By how much the weighted sum of squares of a simulation, as the statistics have it, or twice the
 /// negative log-likelihood where that is not a sum of squares, exceeds that of the fit.
 fn rise(run: &Run, statistics: &Statistics, row: &[f64]) -> f64 {
-    if ErrorModel::of(&run.problem) == ErrorModel::Computed || !run.problem.is_normal() {
+    let is_other = !run.problem.is_normal() || super::joint::is_joint(&run.problem.series);
+    if ErrorModel::of(&run.problem) == ErrorModel::Computed || is_other {
         let least = run.observed.best.as_ref().map_or(f64::NAN, |best| best.fitness);
         return 2.0 * (run.evaluation.objective(&run.problem, row) - least);
     }

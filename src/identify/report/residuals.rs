@@ -6,7 +6,7 @@ use super::parts::{engineering, explained, number, one_panel, scrolling, series,
 use super::view::View;
 use crate::elementary;
 use crate::plot::{Axis, MANY, Mark};
-use crate::problem::{Finding, FindingKind, Periodogram, Solution, SolvedSeries};
+use crate::problem::{Finding, FindingKind, Periodogram, Solution, SolvedSeries, covariance_line};
 use maud::{Markup, html};
 
 /// Bars of a histogram.
@@ -192,6 +192,9 @@ fn table(view: &View) -> Markup {
                 @for series in &solution.series { (row(solution, series, ("", columns))) }
                 @for series in &solution.validation { (row(solution, series, (" (validation)", columns))) }
             }
+        }
+        @for own in &solution.likelihood.covariances {
+            p { "Covariance of " (covariance_line(own)) "." }
         }
     }
 }

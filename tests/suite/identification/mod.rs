@@ -1,6 +1,7 @@
 //! Problems, populations, statistics and reports; runs that are interrupted, watched and divided.
 
 mod claims;
+mod correlated_outputs;
 mod digits;
 mod fuel_cell_benchmark;
 mod gapilib;

@@ -49,6 +49,15 @@ class Column(TypedDict, total=False):
     delay: Union[float, str]
 
 
+class Covariance(TypedDict, total=False):
+    """That the errors of outputs at one instant are correlated."""
+
+    outputs: Sequence[str]
+    matrix: Union[str, Sequence[Sequence[float]]]
+    correlation: Sequence[Sequence[float]]
+    group: str
+
+
 class _Measured(TypedDict):
     data: Any
     outputs: Mapping[str, Union[str, Sequence[str], Column]]
@@ -65,6 +74,7 @@ class Experiment(_Measured, total=False):
     set: Union[str, Mapping[str, Union[float, bool, str]]]
     start: Mapping[str, Union[float, bool, str]]
     weight: float
+    covariance: Union[str, Sequence[Sequence[float]], Covariance]
     validation: bool
     steady_state: bool
     rest: bool

@@ -51,6 +51,7 @@ fn analysed(
             rows: Vec::new(),
             missing: Vec::new(),
             scaling: Default::default(),
+            joint: None,
         }],
         objectives: vec![("sse".into(), (FITNESSES[0].make)(&mut Options::default()).unwrap())],
         method_name: method.name.to_owned(),

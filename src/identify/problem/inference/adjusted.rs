@@ -270,6 +270,7 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         rows: Vec::new(),
         missing: Vec::new(),
         scaling: Default::default(),
+        joint: None,
     })
 }
 

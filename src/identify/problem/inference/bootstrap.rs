@@ -16,6 +16,7 @@ use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
 use crate::problem::distributions::{normal_below, normal_quantile};
+use crate::problem::joint::is_joint;
 use crate::problem::{ErrorModel, Problem, Role, Run, Simulate, other_shards};
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
@@ -103,6 +104,10 @@ pub struct Bootstrapped {
 const OF_COMPUTED: &str = "There is no bootstrap where the model computes the standard deviations, or \
      where errors are not normal: the profiles and the posterior tell how well the parameters are known.";
 
+/// Residuals are drawn one by one.
+const OF_JOINT: &str = "There is no bootstrap where the errors of outputs are correlated: the profiles \
+     and the posterior tell how well the parameters are known.";
+
 /// The bootstrap; `None` where it is refused.
 pub fn bootstrap(
     run: &Run,
@@ -111,8 +116,8 @@ pub fn bootstrap(
     refusals: &mut Vec<String>,
 ) -> Result<Option<Bootstrap>, Fault> {
     let (problem, evaluation) = (&run.problem, &run.evaluation);
-    if ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal() {
-        refusals.push(OF_COMPUTED.to_owned());
+    if let Some(why) = refused(problem) {
+        refusals.push(why.to_owned());
         return Ok(None);
     }
     let measured: Vec<f64> = problem.series.iter().flat_map(|series| series.y.clone()).collect();
@@ -162,6 +167,15 @@ pub fn bootstrap(
         parameters,
         estimates,
     }))
+}
+
+/// Why there is none.
+fn refused(problem: &Problem) -> Option<&'static str> {
+    if is_joint(&problem.series) {
+        return Some(OF_JOINT);
+    }
+    let is_computed = ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal();
+    is_computed.then_some(OF_COMPUTED)
 }
 
 /// What the replicates say about a parameter.

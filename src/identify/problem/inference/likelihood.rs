@@ -2,6 +2,7 @@
 
 use crate::elementary;
 use crate::problem::explicit::Explicit;
+use crate::problem::joint::{self, is_joint};
 use crate::problem::{ErrorModel, Problem, Role, Run, Series, likelihood};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -34,7 +35,7 @@ fn logarithms(problem: &Problem) -> f64 {
 
 /// -log L of the data alone where errors are not normal.
 fn of_data(problem: &Problem, simulated: &[f64]) -> Option<f64> {
-    if problem.is_normal() {
+    if problem.is_normal() && !is_joint(&problem.series) {
         return None;
     }
     let is_prior = |series: &&Series| series.role == Role::Prior;
@@ -71,13 +72,16 @@ impl Likelihood {
         let square: f64 = measured.iter().map(|(r, _)| r * r).sum();
         let of_weights: f64 = measured.iter().map(|(_, weight)| elementary::ln(*weight)).sum();
         let error_model = ErrorModel::of(problem);
-        let mut names: Vec<&str> = data().filter_map(Series::deviation).collect();
+        let of_joint = |own: &&Series| own.joint.is_none();
+        let mut names: Vec<&str> = data().filter(of_joint).filter_map(Series::deviation).collect();
         names.sort_unstable();
         names.dedup();
         let (of_residuals, deviations) = match error_model {
             ErrorModel::OneVariance => (0.5 * n * (elementary::ln(square / n) + 1.0), 1),
             ErrorModel::Known | ErrorModel::Computed => (0.5 * square, 0),
-            ErrorModel::Estimated => (0.5 * square, names.len()),
+            ErrorModel::Estimated => {
+                (0.5 * square, names.len() + joint::estimated(&problem.series))
+            }
         };
         let log = match of_data(problem, &simulated) {
             Some(negative) => -negative,

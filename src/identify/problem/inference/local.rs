@@ -87,13 +87,14 @@ impl Local {
         if !found.repeated.is_empty() {
             return Err("two series contain the same numbers");
         }
+        let columns = found.weighted(&found.jacobian);
         let relative = found.explicit.clone().zip(with_coefficients(&found));
         let Statistics { weights: scales, residuals, freedom, believed, variance, robust, .. } =
             found;
         if freedom <= 0.0 {
             return Err("there are not more points than parameters");
         }
-        let entry = |j: usize, k: usize| found.jacobian[k][j] * scales[j];
+        let entry = |j: usize, k: usize| columns[k][j];
         let jacobian = DMatrix::from_fn(scales.len(), values.len(), entry);
         if jacobian.iter().any(|entry| !entry.is_finite()) {
             return Err("the simulation fails near the best point");

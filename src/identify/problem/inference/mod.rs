@@ -140,6 +140,9 @@ fn without_design(problem: &Problem) -> Option<&'static str> {
     if problem.series.iter().any(|own| !own.scaling.is_empty()) {
         return Some("where scales or offsets are estimated: a new measurement may have others");
     }
+    if super::joint::is_joint(&problem.series) {
+        return Some("where the errors of outputs are correlated");
+    }
     // What further points would tell of their deviations is not counted.
     (ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal()).then_some(
         "where the model computes the standard deviations, or where errors are not normal",

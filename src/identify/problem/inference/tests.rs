@@ -93,6 +93,7 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         rows: Vec::new(),
         missing: Vec::new(),
         scaling: Default::default(),
+        joint: None,
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, "levenberg_marquardt").unwrap();

@@ -14,13 +14,20 @@
 //! 1 + 4 Σ fᵢ (1 − fᵢ) / νᵢ
 //! ```
 //!
-//! References: [Satterthwaite 1946](gapilib_base::bibliography#satterthwaite-1946);
+//! Where the covariance of m outputs is estimated from n instants, the parameters follow at most ℓ
+//! degrees of freedom of a combination of outputs, and the errors of the others are covariates to it:
+//! ν = n − ℓ − m + 1, and the variance is larger by n/ν (1 + (m − 1)/(ν − 1)) than that of the most likely
+//! covariance.
+//!
+//! References: [Rao 1967](gapilib_base::bibliography#rao-1967) (covariates),
+//! [Satterthwaite 1946](gapilib_base::bibliography#satterthwaite-1946);
 //! [Meier 1953](gapilib_base::bibliography#meier-1953).
 
 use crate::elementary;
-use crate::problem::Problem;
+use crate::fitness::JointGroup;
+use crate::problem::{Problem, joint};
 use crate::singular_values::SingularValues;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Less than one degree of freedom has no mean.
 const LEAST: f64 = 1.0;
@@ -38,6 +45,9 @@ pub(crate) struct Effective {
 
 /// Of `freedom` degrees in all; `columns`: weighted sensitivities.
 pub fn effective(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Effective {
+    if let Some(found) = of_covariances(problem, columns, freedom) {
+        return found;
+    }
     let groups = groups(problem);
     let count = groups.iter().max().map_or(0, |most| most + 1);
     let points = groups.len();
@@ -86,6 +96,47 @@ pub fn effective(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Effec
         effective.inflation = effective.inflation.max(all * weights / believed);
     }
     effective
+}
+
+/// The same where covariances of outputs are estimated; `None` where none is.
+fn of_covariances(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Option<Effective> {
+    let all = joint::groups(&problem.series).into_iter();
+    let estimated = |own: &(&str, Vec<usize>)| problem.series[own.1[0]].sigma.is_estimated();
+    let all: Vec<JointGroup> = all
+        .filter(estimated)
+        .map(|(_, members)| joint::group(&problem.series, &members, 0.0))
+        .collect();
+    let points = columns.first()?.len();
+    let is_finite = columns.iter().flatten().all(|value| value.is_finite());
+    if all.is_empty() || !is_finite || points < columns.len() || freedom <= 0.0 {
+        return None;
+    }
+    let norm = |column: &Vec<f64>| column.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let used: Vec<&Vec<f64>> = columns.iter().filter(|column| norm(column) > 0.0).collect();
+    let scaled = DMatrix::from_fn(points, used.len(), |j, k| used[k][j] / norm(used[k]));
+    let found = SingularValues::of(&scaled)?;
+    let along: Vec<usize> =
+        (0..found.s.len()).filter(|&d| found.s[d] > NULL * found.largest()).collect();
+    let mut effective = Effective { freedom, inflation: 1.0 };
+    for own in &all {
+        // What the parameters follow of each combination of outputs.
+        let mut followed = DMatrix::<f64>::zeros(own.size, own.size);
+        for row in &own.rows {
+            for ((a, p), (b, q)) in row.iter().flat_map(|a| row.iter().map(move |b| (a, b))) {
+                let parts = along.iter().map(|&d| found.u[(*p, d)] * found.u[(*q, d)]);
+                followed[(*a, *b)] += parts.sum::<f64>();
+            }
+        }
+        let most = SymmetricEigen::new(followed).eigenvalues.max();
+        let n = own.count() / own.size as f64;
+        let others = own.size as f64 - 1.0;
+        let left = (n - most - others).max(LEAST);
+        effective.freedom = effective.freedom.min(left);
+        // Errors of one output tell of those of another as covariates do.
+        let factor = n / left * (1.0 + others / (left - 1.0).max(LEAST));
+        effective.inflation = effective.inflation.max(factor * freedom / points as f64);
+    }
+    Some(effective)
 }
 
 /// The number of the standard deviation of each point: series with one name share it. Empty where not all

@@ -19,11 +19,13 @@ pub(super) mod resolution;
 mod special_functions;
 
 use crate::elementary;
+use crate::fitness::Whitening;
 use at_bounds::AtBounds;
 pub(crate) use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
 use super::explicit::Explicit;
+use super::joint::is_joint;
 use super::non_identifiable::{self, Form, NonIdentifiable, Rank};
 use super::sensitivities::Sensitivities;
 use super::separable::Combination;
@@ -103,8 +105,8 @@ pub struct Statistics {
     pub(super) shares: Vec<f64>,
     /// Scales and offsets of relative data.
     pub(super) explicit: Option<Explicit>,
-    /// What derivatives of the points are multiplied with to become sensitivities.
-    scales: Vec<f64>,
+    /// What makes derivatives of the points sensitivities.
+    scales: Scales,
     /// The weighted sum of squares, as the variance is estimated from it.
     square: f64,
     /// The sum of squares that least squares minimize.
@@ -255,7 +257,7 @@ impl Statistics {
         others: &[Vec<f64>],
         data: &Data,
     ) {
-        let scales = &data.scales[..];
+        let scales = &data.scales;
         let mut rank = non_identifiable::rank(best, &[], self.rank_tolerance);
         if !rank.non_identifiable.is_empty() {
             let elsewhere = self.elsewhere(problem, evaluation, others, scales);
@@ -291,7 +293,7 @@ impl Statistics {
         problem: &Problem,
         evaluation: &Evaluation,
         others: &[Vec<f64>],
-        scales: &[f64],
+        scales: &Scales,
     ) -> Vec<Sensitivities> {
         let mut found = Vec::new();
         for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
@@ -300,7 +302,7 @@ impl Statistics {
             let (jacobian, took) = sensitivities(problem, evaluation, values, self.fineness);
             self.simulations += took;
             let columns = weighted(&jacobian, scales);
-            let errors = problem.noise * self.fineness * size(&simulated, scales);
+            let errors = problem.noise * self.fineness * size(&simulated, &scales.own);
             let is_noticeable = largest_effect(&columns, values) > NOTICEABLE * errors;
             if is_noticeable && columns.iter().flatten().all(|value| value.is_finite()) {
                 found.push(Sensitivities { values: values.clone(), columns });
@@ -316,7 +318,7 @@ impl Statistics {
         (problem, evaluation): (&Problem, &Evaluation),
         best: &Sensitivities,
         group: &mut NonIdentifiable,
-        (elsewhere, scales): (&[Sensitivities], &[f64]),
+        (elsewhere, scales): (&[Sensitivities], &Scales),
     ) {
         let is_deficient =
             |point: &Sensitivities| point.is_deficient(group, ELSEWHERE * self.rank_tolerance);
@@ -343,6 +345,14 @@ impl Statistics {
     }
 }
 
+/// What makes derivatives of the points sensitivities: factors, and where errors are correlated a
+/// linear map of what they make.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Scales {
+    own: Vec<f64>,
+    whitening: Option<Whitening>,
+}
+
 /// The data as they count at one place.
 struct Data {
     weights: Vec<f64>,
@@ -350,7 +360,7 @@ struct Data {
     /// numbers, nothing where it is one of a deviation.
     shares: Vec<f64>,
     /// Weights with shares, of deviations whole.
-    scales: Vec<f64>,
+    scales: Scales,
     residuals: Vec<f64>,
     /// Weighted sum of squares.
     square: f64,
@@ -380,11 +390,12 @@ impl Data {
             false => shares.iter().sum(),
         };
         let searched = evaluation.searched_sum(problem, simulated);
+        let scales = Scales { own: scales, whitening: evaluation.whitening(problem, simulated) };
         Data { weights, shares, scales, residuals, square, searched }
     }
 
     fn shared_residuals(&self) -> Vec<f64> {
-        let parts = self.residuals.iter().zip(&self.scales).zip(&self.weights);
+        let parts = self.residuals.iter().zip(&self.scales.own).zip(&self.weights);
         parts.map(|((r, scale), weight)| r * scale / weight).collect()
     }
 }
@@ -455,6 +466,17 @@ impl Statistics {
         Some((weighted(&own.columns, &self.scales), self.rank_tolerance))
     }
 
+    /// What makes derivatives those of the residuals, all series as if there were no equal ones.
+    fn by_weights(&self) -> Scales {
+        Scales { own: self.weights.clone(), whitening: self.scales.whitening.clone() }
+    }
+
+    /// The sensitivities of the residuals by the parameters, column by column, from derivatives of the
+    /// points.
+    pub(super) fn weighted(&self, jacobian: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        weighted(jacobian, &self.by_weights())
+    }
+
     /// Whether a parameter that has no effect acts on the outputs, so that it is scales and offsets of
     /// relative data that make up for it.
     pub(super) fn is_made_up_for(&self, k: usize) -> bool {
@@ -482,7 +504,7 @@ impl Statistics {
     pub(super) fn deviation_with(&self, k: usize, held: usize) -> Option<f64> {
         let kept = (0..self.jacobian.len()).filter(|j| *j != held);
         let columns: Vec<Vec<f64>> = kept.map(|j| self.jacobian[j].clone()).collect();
-        let found = uncertainty_given(&weighted(&columns, &self.weights), self.variance)?;
+        let found = uncertainty_given(&weighted(&columns, &self.by_weights()), self.variance)?;
         let place = if k > held { k - 1 } else { k };
         Some(found.standard_deviations[place]).filter(|own| own.is_finite())
     }
@@ -535,11 +557,12 @@ fn rise_of_squares(
     data: &Data,
     (best, row): (&[f64], &[f64]),
 ) -> f64 {
-    if ErrorModel::of(problem) == ErrorModel::Computed || !problem.is_normal() {
+    let is_other = !problem.is_normal() || is_joint(&problem.series);
+    if ErrorModel::of(problem) == ErrorModel::Computed || is_other {
         return 2.0 * (evaluation.objective(problem, row) - evaluation.objective(problem, best));
     }
     let measured = problem.series.iter().flat_map(|series| &series.y);
-    let points = measured.zip(row).zip(&data.scales);
+    let points = measured.zip(row).zip(&data.scales.own);
     points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() - data.square
 }
 
@@ -565,9 +588,14 @@ fn shares(series: &[Series], repeated: &[(usize, usize)]) -> Vec<f64> {
     all.flat_map(|own| std::iter::repeat_n(share(own), own.1.y.len())).collect()
 }
 
-fn weighted(jacobian: &[Vec<f64>], scales: &[f64]) -> Vec<Vec<f64>> {
-    let column =
-        |column: &Vec<f64>| column.iter().zip(scales).map(|(j, s)| j * s).collect::<Vec<f64>>();
+fn weighted(jacobian: &[Vec<f64>], scales: &Scales) -> Vec<Vec<f64>> {
+    let column = |column: &Vec<f64>| {
+        let mut column: Vec<f64> = column.iter().zip(&scales.own).map(|(j, s)| j * s).collect();
+        if let Some(whitening) = &scales.whitening {
+            whitening.apply(&mut column);
+        }
+        column
+    };
     jacobian.iter().map(column).collect()
 }
 
@@ -603,7 +631,7 @@ impl Fine {
         problem: &Problem,
         evaluation: &Evaluation,
         (values, simulated): (&[f64], &[f64]),
-        scales: &[f64],
+        scales: &Scales,
     ) -> Fine {
         let at = |fineness: f64| {
             let (jacobian, simulations) = sensitivities(problem, evaluation, values, fineness);

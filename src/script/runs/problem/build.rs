@@ -378,6 +378,7 @@ fn experiments(
             all.calibration.get_or_insert_with(|| Calibration::of(file, program));
         }
         if entry.validation {
+            super::covariance::refuse_kept(entry).map_err(alone)?;
             all.validation.push((built.experiment, built.series));
             all.validation_states.push(built.states);
             continue;
@@ -397,6 +398,8 @@ fn experiments(
             super::relative::check(file, entry, series, own.is_logarithmic).map_err(alone)?;
             all.logarithmic.extend(own.is_logarithmic.then_some((first + number, own.place)));
         }
+        super::covariance::correlate(file, (entry, label), &mut all.series[first..])
+            .map_err(alone)?;
         for own in built.undecided {
             if !all.undecided.contains(&own) {
                 all.undecided.push(own);
@@ -412,6 +415,7 @@ fn experiments(
         return Err(one(fault!(BAD_OPTION, "{what}").help(remedy)));
     }
     let logarithmic: Vec<usize> = all.logarithmic.iter().map(|own| own.0).collect();
+    super::covariance::check_all(file, &all.series).map_err(alone)?;
     let kept: Vec<&Series> = all.validation.iter().flat_map(|own| &own.1).collect();
     super::relative::check_all(file, (&all.series, &logarithmic), &kept).map_err(alone)?;
     Ok(all)
@@ -443,7 +447,9 @@ fn objectives(
     series: &[Series],
     noise: f64,
 ) -> Result<Vec<Objective>, Vec<Diagnostic>> {
-    let is_computed = |own: &Series| matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal();
+    let is_computed = |own: &Series| {
+        matches!(own.sigma, Sigma::Variable(_)) || !own.is_normal() || own.joint.is_some()
+    };
     if series.iter().any(|own| own.sigma.is_estimated() || is_computed(own)) {
         return likelihood_alone(file, series, noise).map_err(alone);
     }
@@ -502,8 +508,8 @@ fn likelihood_alone(
     if !allowed {
         let fault = fault!(
             BAD_OPTION,
-            "a sigma that is estimated or computed by the model, and an `error` that is not normal, \
-             minimize the negative log-likelihood and cannot be combined with another fitness";
+            "a sigma that is estimated or computed by the model, a `covariance`, and an `error` that is \
+             not normal minimize the negative log-likelihood and cannot be combined with another fitness";
             help: "remove `fitness`, or give sigmas as numbers and errors that are normal"
         );
         return Err(fault.at(file.places.at(&["fitness"])));

@@ -32,6 +32,8 @@ pub(super) struct ProblemFile {
     /// Samples over which the report predicts, with process noise.
     pub prediction_steps: Option<usize>,
     pub experiment: Vec<ExperimentEntry>,
+    /// That errors of outputs at one instant are correlated, in all experiments.
+    pub covariance: Option<CovarianceEntry>,
     pub fitness: Option<OneOrMany>,
     #[serde(default)]
     pub method: MethodEntry,
@@ -134,6 +136,8 @@ pub(super) struct ExperimentEntry {
     /// Initial values of states in this experiment.
     #[serde(default)]
     pub start: IndexMap<String, ValueEntry>,
+    /// That errors of outputs at one instant are correlated.
+    pub covariance: Option<CovarianceEntry>,
     pub weight: Option<f64>,
     /// Not used for the fit, compared at the end.
     #[serde(default)]
@@ -238,6 +242,35 @@ pub(super) struct ColumnEntry {
     /// What its values are multiplied with, to see whether they fit better so.
     #[serde(skip)]
     pub tried: Option<f64>,
+}
+
+/// A covariance: a matrix for all outputs, `estimate`, or a table.
+#[derive(Debug, Clone)]
+pub(super) enum CovarianceEntry {
+    Estimated(String),
+    Given(Vec<Vec<f64>>),
+    More(CovarianceTable),
+}
+
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CovarianceTable {
+    /// The outputs that it is meant for; all unless given.
+    #[serde(default)]
+    pub outputs: Vec<String>,
+    /// Covariances, or `estimate`.
+    pub matrix: Option<MatrixEntry>,
+    /// Correlations, where the outputs have their sigmas.
+    pub correlation: Option<Vec<Vec<f64>>>,
+    /// Experiments that name one group share an estimated covariance.
+    pub group: Option<String>,
+}
+
+/// Covariances, or `estimate`.
+#[derive(Debug, Clone)]
+pub(super) enum MatrixEntry {
+    Estimated(String),
+    Given(Vec<Vec<f64>>),
 }
 
 /// A scale that is estimated: `estimate`, a name that outputs share, or a table.

@@ -2,10 +2,10 @@
 //! is written in none of them, the message says what was expected.
 
 use super::file::{
-    BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, LimitEntry, NoiseEntry, NoiseTable,
-    OffsetEntry, OneOrMany, OperatorEntry, ParameterEntry, ParameterTable, PriorEntry,
-    PriorNumbers, ScaleEntry, ScaleTable, SegmentsEntry, SetEntry, SigmaEntry, ValueEntry,
-    WeightEntry,
+    BandsEntry, Column, ColumnEntry, CovarianceEntry, CovarianceTable, DelayEntry, FitnessEntry,
+    LimitEntry, MatrixEntry, NoiseEntry, NoiseTable, OffsetEntry, OneOrMany, OperatorEntry,
+    ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, ScaleEntry, ScaleTable,
+    SegmentsEntry, SetEntry, SigmaEntry, ValueEntry, WeightEntry,
 };
 use indexmap::IndexMap;
 use serde::de::value::MapAccessDeserializer;
@@ -20,12 +20,21 @@ struct Forms<T, M = IgnoredAny> {
     text: Option<fn(String) -> T>,
     truth: Option<fn(bool) -> T>,
     list: Option<fn(Vec<String>) -> T>,
+    matrix: Option<fn(Vec<Vec<f64>>) -> T>,
     table: Option<fn(M) -> T>,
 }
 
 impl<T, M> Forms<T, M> {
     fn new(expected: &'static str) -> Forms<T, M> {
-        Forms { expected, number: None, text: None, truth: None, list: None, table: None }
+        Forms {
+            expected,
+            number: None,
+            text: None,
+            truth: None,
+            list: None,
+            matrix: None,
+            table: None,
+        }
     }
 }
 
@@ -65,6 +74,13 @@ impl<'de, T, M: Deserialize<'de>> Visitor<'de> for Forms<T, M> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<T, A::Error> {
+        if let Some(matrix) = self.matrix {
+            let mut rows = Vec::new();
+            while let Some(row) = items.next_element()? {
+                rows.push(row);
+            }
+            return Ok(matrix(rows));
+        }
         let Some(list) = self.list else {
             return Err(Error::invalid_type(Unexpected::Seq, &self));
         };
@@ -210,6 +226,28 @@ in_forms!(
         truth: Some(BandsEntry::Requested),
         list: Some(BandsEntry::Variables),
         ..Forms::new("`true`, `false`, or a list of variables")
+    }
+);
+
+in_forms!(
+    CovarianceEntry,
+    Forms::<_, CovarianceTable> {
+        text: Some(CovarianceEntry::Estimated),
+        matrix: Some(CovarianceEntry::Given),
+        table: Some(CovarianceEntry::More),
+        ..Forms::new(
+            "a matrix, `[[1e-4, 2e-5], [2e-5, 4e-4]]`, \"estimate\", or a table such as `{ outputs = \
+             [\"a\", \"b\"], correlation = [[1, 0.5], [0.5, 1]] }`",
+        )
+    }
+);
+
+in_forms!(
+    MatrixEntry,
+    Forms::<_> {
+        text: Some(MatrixEntry::Estimated),
+        matrix: Some(MatrixEntry::Given),
+        ..Forms::new("a matrix, `[[1e-4, 2e-5], [2e-5, 4e-4]]`, or \"estimate\"")
     }
 );
 

@@ -232,17 +232,11 @@ fn distribution(
         bail!(BAD_OPTION, "the base of the prior of `{name}` is {base}"; help: "write 10 for the logarithm to base 10");
     }
     let PriorNumbers { mean, sd, median, factor, scale, min, max, .. } = *numbers;
-    let [low, high] = [min.unwrap_or(range[0]), max.unwrap_or(range[1])];
-    let width = match (min, max) {
-        (Some(_), _) | (_, Some(_)) if low.is_nan() || high.is_nan() || low >= high => {
-            bail!(BAD_OPTION, "the prior of `{name}` reaches from {low} to {high}"; help: "write the lower limit first");
-        }
-        _ => high - low,
-    };
+    let [low, high] = limits(name, [min, max], range)?;
     let kind = numbers.distribution.as_deref().unwrap_or("normal");
     let (found, constant) = match (kind, [mean, sd, median, factor, scale]) {
         ("uniform", [None, None, None, None, None]) => {
-            (Distribution::Uniform, elementary::ln(width))
+            (Distribution::Uniform, elementary::ln(high - low))
         }
         ("loguniform", [None, None, None, None, None]) if low > 0.0 => {
             (Distribution::LogUniform, elementary::ln(elementary::ln(high / low)))
@@ -281,6 +275,16 @@ fn distribution(
         Some(base) => Ok((found, constant - elementary::ln(elementary::ln(base)))),
         None => Ok((found, constant)),
     }
+}
+
+/// Between which values a prior is uniform: the range unless its limits are given.
+fn limits(name: &str, given: [Option<f64>; 2], range: [f64; 2]) -> Result<[f64; 2], Fault> {
+    let [low, high] = [given[0].unwrap_or(range[0]), given[1].unwrap_or(range[1])];
+    let is_reversed = low.is_nan() || high.is_nan() || low >= high;
+    if given != [None, None] && is_reversed {
+        bail!(BAD_OPTION, "the prior of `{name}` reaches from {low} to {high}"; help: "write the lower limit first");
+    }
+    Ok([low, high])
 }
 
 /// The density of a parameter whose logarithm is normal: it is 1/p times that of the logarithm, which

@@ -10,6 +10,7 @@ mod build;
 mod calibration;
 mod constraint;
 mod control;
+mod covariance;
 mod data;
 mod deviation;
 mod draft;

@@ -67,6 +67,9 @@ fn check(file: &ProblemFile) -> Result<(), Diagnostic> {
     if !file.noise.is_empty() {
         return refuse("process noise", at("noise"));
     }
+    if file.covariance.is_some() {
+        return refuse("correlated errors", at("covariance"));
+    }
     if !file.constraints.is_empty() {
         return refuse("constraints between parameters", at("constraints"));
     }
@@ -96,6 +99,7 @@ fn check_experiment(entry: &ExperimentEntry) -> Result<(), Diagnostic> {
         (!entry.inputs.is_empty(), "inputs", "inputs that follow data"),
         (!entry.start.is_empty(), "start", "initial values of an experiment"),
         (entry.set.file.is_some(), "set", "values of a file of SSP"),
+        (entry.covariance.is_some(), "covariance", "correlated errors"),
         (entry.weight.is_some(), "weight", "the weight of an experiment"),
         (entry.validation, "validation", "an experiment for validation"),
         (entry.steady_state, "steady_state", "a steady state as the start"),

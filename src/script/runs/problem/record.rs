@@ -6,7 +6,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::ga::operators::KINDS;
 use crate::registry::{BAD_OPTION, Choice};
-use crate::value::{ArrayValue, Elements, FromValue, RecordValue, Value};
+use crate::value::{ArrayValue, Elements, FromValue, RealMatrix, RecordValue, Value};
 use toml::{Table, Value as Entry};
 
 /// The entries of the file that states what the record states.
@@ -145,6 +145,9 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
         put(&mut entry, "x", x);
     }
     put(&mut entry, "outputs", outputs(fields)?);
+    if let Some(covariance) = covariance(fields)? {
+        put(&mut entry, "covariance", covariance);
+    }
     let inputs: Vec<String> = fields.get("inputs")?;
     let columns: Vec<String> = fields.get("inputColumns")?;
     same_size("inputs", inputs.len(), "inputColumns", columns.len())?;
@@ -167,6 +170,32 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     }
     put_number(&mut entry, "tolerance", fields.get("tolerance")?);
     Ok(entry)
+}
+
+/// The covariance of the errors of the outputs of an experiment.
+fn covariance(fields: &Fields<'_>) -> Result<Option<Entry>, Fault> {
+    let rows = |name: &str| -> Result<Option<Entry>, Fault> {
+        let matrix: RealMatrix = fields.get(name)?;
+        let row = |k: usize| Entry::from(matrix.row(k).to_vec());
+        let rows: Vec<Entry> = (0..matrix.rows).map(row).collect();
+        Ok((!rows.is_empty()).then(|| Entry::from(rows)))
+    };
+    let table = |key: &str, value: Entry| Table::from_iter([(key.to_owned(), value)]);
+    let group = fields.text("estimatedCovariance")?;
+    match (rows("covariance")?, rows("correlation")?, group.as_str()) {
+        (None, None, "") => Ok(None),
+        (Some(matrix), None, "") => Ok(Some(matrix)),
+        (None, Some(matrix), "") => Ok(Some(Entry::Table(table("correlation", matrix)))),
+        (None, None, "estimate") => Ok(Some(Entry::from("estimate"))),
+        (None, None, group) => {
+            let mut entry = table("matrix", Entry::from("estimate"));
+            put(&mut entry, "group", group);
+            Ok(Some(Entry::Table(entry)))
+        }
+        _ => {
+            bail!(BAD_OPTION, "`covariance`, `correlation` and `estimatedCovariance` exclude each other"; help: "give one of them")
+        }
+    }
 }
 
 /// What follows a scale that may be negative.

@@ -145,8 +145,7 @@ impl Comparison<'_> {
         let scaling = relative::scaling(requested, (self.experiment, y_name))?;
         let own_unit = self.unit_of_output(y_name, requested, &column);
         let measured = data::in_unit(&column, y_name, &own_unit, requested, (table, notes))?;
-        let unit = &own_unit.symbol;
-        note_unit_of_sigma(y_name, requested, (&measured, unit), notes);
+        note_unit_of_sigma(y_name, requested, (&measured, &own_unit.symbol), notes);
         let count = measured.values.len();
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
         let sigma = self.sigma(y_name, requested, (&own_unit, &measured))?;
@@ -175,7 +174,7 @@ impl Comparison<'_> {
             role: Role::Data,
             experiment: self.experiment.to_owned(),
             y_name: y_name.to_owned(),
-            y_unit: data::shown_unit(unit, requested, &column.about),
+            y_unit: data::shown_unit(&own_unit.symbol, requested, &column.about),
             x_name: self.x_name.to_owned(),
             x_unit: self.unit(self.x_name).symbol,
             file: self.entry.data.display().to_string(),
@@ -186,6 +185,7 @@ impl Comparison<'_> {
             sigma,
             law: Law::Normal,
             scaling,
+            joint: None,
             censored,
             column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
             x_column: self.x_column.to_owned(),
