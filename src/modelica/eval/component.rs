@@ -3,7 +3,7 @@
 use super::errors::MISPLACED;
 use super::scope::Owner;
 use super::variable::{Declared, Storage, Variable, named, shadow_of};
-use super::{Evaluator, FunctionComponent, Given, Scope, ValueType};
+use super::{Evaluator, Function, FunctionComponent, Given, Scope, ValueType};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::name::{Ident, Name};
@@ -43,6 +43,27 @@ impl Evaluator<'_> {
                 None => Ok(()),
             },
         }
+    }
+
+    /// Declares all inputs of a function.
+    pub(super) fn prepare_inputs(&mut self, function: &Function) -> Result<(), Diagnostic> {
+        for (at, input) in function.inputs.iter().enumerate() {
+            if !self.scope.variables.contains_key(&input.name) {
+                let given = self.scope.given.get_mut(at).and_then(Option::take);
+                self.declare(input, given, true)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Declares all outputs and local variables of a function.
+    pub(super) fn prepare_variables(&mut self, function: &Function) -> Result<(), Diagnostic> {
+        for component in function.outputs.iter().chain(&function.locals) {
+            if !self.scope.variables.contains_key(&component.name) {
+                self.declare(component, None, false)?;
+            }
+        }
+        Ok(())
     }
 
     /// Declares a component with the value given by the caller, that of its binding, or none yet.

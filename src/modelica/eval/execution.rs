@@ -2,9 +2,7 @@
 
 use super::errors::MODEL_ONLY;
 use super::variable::Variable;
-use super::{
-    Compiled, Evaluator, Function, FunctionBody, FunctionComponent, Scope, ValueType, depth,
-};
+use super::{Evaluator, Function, FunctionBody, FunctionComponent, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic};
 use crate::execute;
 use crate::fault;
@@ -23,9 +21,6 @@ impl Evaluator<'_> {
     ) -> Result<Vec<Value>, Diagnostic> {
         let _call = depth::Call::new(&function.name).at(span)?;
         self.check_interrupted(span)?;
-        if let Some(outputs) = Compiled::call(function, &given, self.host) {
-            return Ok(outputs);
-        }
         let mut scope = Scope::of_function(function.clone(), given, span);
         if let Some(script) = self.host.script() {
             script.begin_function();
@@ -58,9 +53,7 @@ impl Evaluator<'_> {
     }
 
     fn body(&mut self, function: &Arc<Function>) -> Result<Vec<Value>, Diagnostic> {
-        for input in &function.inputs {
-            self.prepare(input.name)?;
-        }
+        self.prepare_inputs(function)?;
         match &function.body {
             FunctionBody::RecordConstructor => return self.constructed(function),
             FunctionBody::PartialDerivative { .. } => return Err(partial_derivative(function)),
@@ -69,9 +62,7 @@ impl Evaluator<'_> {
                 if let Some(outputs) = self.run_compiled(function) {
                     return Ok(outputs);
                 }
-                for component in function.outputs.iter().chain(&function.locals) {
-                    self.prepare(component.name)?;
-                }
+                self.prepare_variables(function)?;
                 execute::statements(self, statements)?;
             }
         }

@@ -1,10 +1,8 @@
 //! Expressions (MLS ch. 3).
 
 use super::errors::{MISPLACED, WRONG_OUTPUTS};
-use super::function::Target;
-use super::scalar::{MAX_DEPTH, Scalar};
-use super::scalar_expression::scalar;
-use super::{Compiled, Evaluator, depth};
+use super::scalar::Scalar;
+use super::{Evaluator, depth};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::name::Name;
@@ -131,30 +129,12 @@ impl Evaluator<'_> {
     }
 
     fn first_output(&mut self, call: &Expression) -> Result<Value, Diagnostic> {
-        if let Some(value) = self.scalar_call(call)? {
-            return Ok(value);
-        }
         let mut outputs = self.outputs(call)?;
         if outputs.is_empty() {
             let message = "expected a value, but the called function has no output";
             return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
         }
         Ok(outputs.swap_remove(0))
-    }
-
-    /// The quick way to call a function of scalars with scalars; `None` where the general way has
-    /// to be taken. Nothing with an effect is evaluated.
-    fn scalar_call(&mut self, call: &Expression) -> Result<Option<Value>, Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(None) };
-        let is_plain = arguments.named.is_empty() && arguments.iterators.is_empty();
-        if !is_plain || function.as_ident().is_some_and(|name| self.scope.get(name).is_some()) {
-            return Ok(None);
-        }
-        let Target::Function(function) = self.target(function)? else { return Ok(None) };
-        let (scope, given) = (&*self.scope, &arguments.positional);
-        let argument = |at: usize| scalar(scope, &given[at], MAX_DEPTH);
-        let output = Compiled::first_output(&function, given.len(), argument, self.host);
-        Ok(output.map(Value::from))
     }
 
     fn end(&mut self, span: Span) -> Result<Value, Diagnostic> {

@@ -1,6 +1,5 @@
 //! A function ready to be called: inheritance resolved, names absolute. Data only.
 
-use super::Compiled;
 use crate::functions::Builtin;
 use crate::inference::{ElementType, Elementary};
 use crate::name::{Ident, Name};
@@ -35,8 +34,6 @@ pub struct Function {
     pub impure: bool,
     /// Where it is defined.
     pub span: Span,
-    /// Made of the rest by the first call.
-    pub compiled: Compiled,
 }
 
 impl Function {

@@ -23,7 +23,6 @@ mod iteration;
 mod reference;
 mod scalar;
 mod scalar_expression;
-mod scalar_function;
 mod scope;
 mod special;
 mod statement;
@@ -39,7 +38,6 @@ pub use declaration::{Given, declare};
 pub use depth::with_stack;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, RunCompiled, ScriptHost};
-pub use scalar_function::Compiled;
 pub use scope::Scope;
 
 use crate::diag::Diagnostic;

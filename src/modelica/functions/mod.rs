@@ -198,16 +198,6 @@ impl Builtin {
         matches!(self.meaning, Meaning::Mathematical(_))
     }
 
-    /// Whether this many scalars have one, calculated without anything else.
-    pub(crate) fn is_of_scalars(&self, count: usize) -> bool {
-        match self.meaning {
-            Meaning::Mathematical(_)
-            | Meaning::Operator(Operator::SemiLinear | Operator::Ordinal) => true,
-            Meaning::Reduction(reduction) => count == 2 && reduction.takes_two_scalars(),
-            _ => false,
-        }
-    }
-
     /// Refuses a wrong number of arguments.
     ///
     /// # Errors

@@ -46,11 +46,6 @@ impl Reduction {
         }
     }
 
-    /// Whether it takes two scalars, too.
-    pub(super) fn takes_two_scalars(self) -> bool {
-        matches!(self, Reduction::Max | Reduction::Min)
-    }
-
     /// What it makes of no elements; `None` where that depends on their type.
     pub fn of_none(self) -> Option<i64> {
         match self {

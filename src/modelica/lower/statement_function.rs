@@ -132,7 +132,6 @@ impl Builder<'_> {
             description: None,
             annotation: Vec::new(),
             impure: false,
-            compiled: Default::default(),
         })
     }
 

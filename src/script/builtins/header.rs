@@ -1,7 +1,7 @@
 //! Headers of commands: Modelica function declarations as [`Function`]s.
 
 use super::args::NOT_GIVEN;
-use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -22,7 +22,6 @@ pub(super) fn function(class: &ClassDefinition) -> Function {
         annotation: Vec::new(),
         impure: true,
         span: Span::NONE,
-        compiled: Compiled::default(),
     };
     let ClassSpecifier::Long(long) = &class.specifier else { return function };
     function.description = long.description.clone();

@@ -112,7 +112,6 @@ fn function(model: &mut FlatModel, class: &ClassDefinition) {
         annotation: Vec::new(),
         impure: false,
         span: class.span,
-        compiled: Default::default(),
     };
     for section in &body.sections {
         match section {

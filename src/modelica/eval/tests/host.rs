@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Fault};
 use crate::eval::{
-    Callee, Compiled, Function, FunctionBody, FunctionComponent, Host, Scope, ScriptHost,
+    Callee, Function, FunctionBody, FunctionComponent, Host, Scope, ScriptHost,
     ValueType, evaluate, evaluate_dimensions,
 };
 use crate::name::{Ident, Name};
@@ -184,7 +184,6 @@ fn function(
         annotation: Vec::new(),
         impure: false,
         span: Span::NONE,
-        compiled: Compiled::default(),
     })
 }
 

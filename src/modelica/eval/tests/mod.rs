@@ -5,7 +5,6 @@ mod expressions;
 mod functions;
 mod host;
 mod robustness;
-mod scalar_functions;
 mod scalars;
 mod shipped;
 mod statements;

@@ -1,7 +1,7 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
 use crate::diag::Diagnostic;
-use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
 use crate::flatten::expressions::local::Local;
@@ -343,7 +343,6 @@ impl Instantiation<'_> {
             annotation: annotations,
             impure: purity == Some(Purity::Impure),
             span: text.span(),
-            compiled: Compiled::default(),
         })
     }
 
@@ -371,7 +370,6 @@ impl Instantiation<'_> {
             annotation: Vec::new(),
             impure: false,
             span,
-            compiled: Compiled::default(),
         })
     }
 

@@ -1,7 +1,7 @@
 //! Functions that are partial derivatives of others (MLS §12.7.2).
 
 use crate::diag::Diagnostic;
-use crate::eval::{Compiled, Function, FunctionBody, ValueType};
+use crate::eval::{Function, FunctionBody, ValueType};
 use crate::fault;
 use crate::flatten::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
 use crate::flatten::ids::ScopeId;
@@ -54,7 +54,6 @@ impl Instantiation<'_> {
             name: name.clone(),
             body: FunctionBody::PartialDerivative { of, by },
             annotation: Vec::new(),
-            compiled: Compiled::default(),
             span: self.classes.text(class).span(),
             ..(*target).clone()
         })

@@ -1,6 +1,6 @@
 //! `print`, which OpenModelica has without a class that declares it: in models, too.
 
-use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
@@ -57,6 +57,5 @@ fn declaration() -> Function {
         annotation: Vec::new(),
         impure: true,
         span: Span::NONE,
-        compiled: Compiled::default(),
     }
 }
