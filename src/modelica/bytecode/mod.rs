@@ -19,6 +19,7 @@ mod code;
 mod elementary;
 mod external;
 mod failure;
+mod kinks;
 mod machine;
 mod machine_code;
 mod memo;

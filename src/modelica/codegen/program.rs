@@ -223,10 +223,12 @@ impl Program {
             && self.selections.is_empty()
     }
 
-    /// Whether the right-hand side calls functions whose derivatives jump.
+    /// Whether the right-hand side calls functions whose derivatives jump where there is no event.
     pub(crate) fn has_kinks(&self) -> bool {
-        let calls = self.continuous.rhs.tape.code.iter().filter_map(|own| own.function());
-        calls.map(|id| id.get().name).any(|name| matches!(name, "abs" | "sign" | "min" | "max"))
+        let tape = &self.continuous.rhs.tape;
+        let mut of_table = tape.code.iter().filter_map(|own| own.function());
+        of_table.any(|id| id.get().is_kinked)
+            || tape.calls.iter().any(|call| self.sorted.dae.functions.has_kinks(call.function))
     }
 
     /// Whether a mean of values of a variable is a value of it.

@@ -140,12 +140,18 @@ fn a_model_that_becomes_stiff_is_handed_over() {
 /// positive part of x was wrong by hundreds of tolerances.
 #[test]
 fn a_kink_without_events_is_left_to_the_implicit_method() {
-    let text = "model M input Real u; Real y(start = 0, fixed = true); Real x(start = 0, fixed = true); \
+    let text = "model M function positive input Real x; output Real y; algorithm y := 0; \
+        while y < x loop y := x; end while; end positive; \
+        function mean input Real x; output Real y; algorithm y := 0; \
+        for i in 1:5000 loop y := y + x/5000; end for; end mean; \
+        input Real u; Real y(start = 0, fixed = true); Real x(start = 0, fixed = true); \
         equation der(x) = u - x; der(y) = KINK; end M;";
     let (at, values) = (times(), values());
     let values: Vec<f64> = values.iter().map(|value| value - 1.5).collect();
     let input: Recorded<'_> = ("u", true, &at, &values);
-    let ends = ["noEvent(if x > 0 then x else 0)", "max(x, 0)", "(x + abs(x))/2"].map(|kink| {
+    let kinks =
+        ["noEvent(if x > 0 then x else 0)", "max(x, 0)", "(x + abs(x))/2", "positive(x)"];
+    let ends = kinks.map(|kink| {
         let program = program(&text.replace("KINK", kink), &[input]);
         let (free, statistics) = run(&mut observing(&program, "y"), true, 1e-6);
         assert_eq!(statistics.explicit_steps, 0, "{kink}");
@@ -160,4 +166,8 @@ fn a_kink_without_events_is_left_to_the_implicit_method() {
         }
     }
     assert!(ends.iter().all(|own| (own - exact).abs() < 1e-5), "{ends:?} {exact}");
+    // The end of a counted loop is no kink.
+    let smooth = program(&text.replace("KINK", "mean(x)"), &[input]);
+    let (_, statistics) = run(&mut observing(&smooth, "y"), true, 1e-6);
+    assert_eq!(statistics.explicit_steps, statistics.steps, "{statistics:?}");
 }

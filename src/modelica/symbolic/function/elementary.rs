@@ -10,11 +10,13 @@ pub(super) const FUNCTIONS: &[Function] = &[
         result: ResultType::AsArguments,
         unit: UnitRule::As(0),
         section: "MLS §3.7.1",
+        is_kinked: true,
         ..real("abs", Value::Unary(f64::abs), |pool, x, _| pool.function("sign", &[x[0]]))
     },
     Function {
         result: ResultType::Integer,
         section: "MLS §3.7.1",
+        is_kinked: true,
         ..real("sign", Value::Unary(sign), zero)
     },
     Function {

@@ -9,6 +9,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         result: ResultType::AsArguments,
         unit: UnitRule::Common,
         section: "MLS §10.3.4",
+        is_kinked: true,
         ..real("min", Value::Binary(min), |pool, x, which| {
             chosen(pool, RelationOperator::LessEqual, x, which)
         })
@@ -17,6 +18,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         result: ResultType::AsArguments,
         unit: UnitRule::Common,
         section: "MLS §10.3.4",
+        is_kinked: true,
         ..real("max", Value::Binary(max), |pool, x, which| {
             chosen(pool, RelationOperator::GreaterEqual, x, which)
         })

@@ -43,10 +43,19 @@ pub struct Function {
     pub result: ResultType,
     /// Whether a jump of its value is a state event outside `noEvent` (MLS §3.7.2).
     pub(crate) event_generating: bool,
+    /// Whether its derivative jumps, without an event.
+    pub(crate) is_kinked: bool,
     /// The unit of its value.
     pub unit: UnitRule,
     /// The section of the MLS that defines it.
     pub section: &'static str,
+}
+
+impl Function {
+    /// Whether its value or its derivative jumps inside a function, where there are no events.
+    pub(crate) fn has_kinks(&self) -> bool {
+        self.is_kinked || self.event_generating
+    }
 }
 
 /// How a value is computed.
@@ -182,6 +191,7 @@ const fn real(
         overflows: false,
         result: ResultType::Real,
         event_generating: false,
+        is_kinked: false,
         unit: UnitRule::Unknown,
         section: "MLS §3.7.3",
     }
