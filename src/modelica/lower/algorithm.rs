@@ -14,6 +14,7 @@ use super::errors::{
 };
 use super::execution::Loops;
 use super::expressions::{Lowered, Lowering};
+use super::function::Before;
 use super::shape::UNKNOWN_TEXT;
 use super::statement_function::may_be_a_function;
 use super::when::is_initial;
@@ -293,14 +294,15 @@ impl<'b> Algorithm<'_, 'b> {
             return execute::execute(self, statement);
         }
         let before = is_loop.then(|| self.builder.execution.values.clone());
+        let said = Before::new(self.builder);
         let asserted = self.builder.dae.assertions.len();
         let guards = self.builder.execution.guards.len();
         let error = match execute::execute(self, statement) {
             Err(error) if may_be_a_function(&error) => error,
             done => return done,
         };
-        let Builder { dae, execution, .. } = &mut *self.builder;
-        dae.assertions.truncate(asserted);
+        said.restore(self.builder);
+        let execution = &mut self.builder.execution;
         execution.values = before.unwrap_or_else(|| std::mem::take(&mut execution.values));
         execution.guards.truncate(guards);
         // A loop whose end is not known must be a function; else its body is not possible.

@@ -48,9 +48,7 @@ impl Builder<'_> {
     }
 
     fn add_target(&mut self, target: &ComponentReference, loops: &Loops, found: &mut Vec<VarId>) {
-        let asserted = self.dae.assertions.len();
-        let places = self.places(target, loops);
-        self.dae.assertions.truncate(asserted);
+        let places = self.without_assertions(|own| own.places(target, loops));
         found.extend(places.iter().flatten().map(|place| place.variable));
     }
 

@@ -8,7 +8,6 @@ use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
 };
 use super::execution::Loops;
-use super::expressions::message_parts;
 use super::expressions::{Array, Lowered, Lowering, size_fault};
 use super::function::Inverts;
 use super::loops::LoopVariable;
@@ -530,6 +529,14 @@ impl<'a> Builder<'a> {
         variable.is_some_and(|v| self.dae.variable(v).base != BaseType::Real)
     }
 
+    /// What is lowered without what it asserts: it may be undone, or need not hold.
+    pub(super) fn without_assertions<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> R {
+        let asserted = self.dae.assertions.len();
+        let result = lower(self);
+        self.dae.assertions.truncate(asserted);
+        result
+    }
+
     /// Assertions in a branch hold only where it is taken, and are looked at only there.
     pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
         let holds = self.dae.pool.constant(1.0);
@@ -615,10 +622,7 @@ impl<'a> Builder<'a> {
             _ => Level::Error,
         };
         let condition = up_to_rounding(&mut lowering.target.dae.pool, condition);
-        // What a message reads need not hold where the condition does.
-        let asserted = lowering.target.dae.assertions.len();
-        let parts = message_parts(&mut lowering, message);
-        self.dae.assertions.truncate(asserted);
+        let parts = self.parts_of_message(message, loops);
         self.dae.assertions.push(Assertion::new(condition, parts, level, span));
         Ok(())
     }

@@ -28,9 +28,7 @@ impl Builder<'_> {
 
     /// The scalars of a target; the whole array where subscripts depend on a loop.
     fn target_scalars(&mut self, target: &ComponentReference) -> Vec<VarId> {
-        let asserted = self.dae.assertions.len();
-        let places = self.places(target, &Vec::new());
-        self.dae.assertions.truncate(asserted);
+        let places = self.without_assertions(|own| own.places(target, &Vec::new()));
         if let Ok(places) = places {
             return places.into_iter().map(|place| place.variable).collect();
         }

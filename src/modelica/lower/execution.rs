@@ -22,6 +22,4 @@ pub(super) struct Execution {
     pub(super) assigned: FxHashSet<VarId>,
     /// More than zero where a reference means the variable, not the value it has in an algorithm.
     pub(super) raw: usize,
-    /// How many assertions there were when the branches of if-expressions began.
-    pub(super) asserted: Vec<usize>,
 }

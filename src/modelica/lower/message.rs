@@ -56,6 +56,20 @@ impl Builder<'_> {
         Ok(Some(level))
     }
 
+    /// The parts of a message; what it reads need not hold where its condition does.
+    pub(super) fn parts_of_message(
+        &mut self,
+        message: Option<&Expression>,
+        loops: &[LoopVariable<Expr>],
+    ) -> Vec<StringPart<Expr>> {
+        self.without_assertions(|own| {
+            let mut lowering = Lowering::new(own);
+            lowering.loops = loops.to_vec();
+            lowering.live = true;
+            message_parts(&mut lowering, message)
+        })
+    }
+
     /// `terminate(message)` where a guard holds: the simulation ends, and says why.
     pub(super) fn terminate(
         &mut self,
@@ -64,13 +78,8 @@ impl Builder<'_> {
         span: Span,
         loops: &[LoopVariable<Expr>],
     ) {
-        let mut lowering = Lowering::new(self);
-        lowering.loops = loops.to_vec();
-        lowering.live = true;
         let mut parts = vec![StringPart::Text("the model ends the simulation: ".into())];
-        let asserted = lowering.target.dae.assertions.len();
-        parts.extend(message_parts(&mut lowering, nth(arguments, 0, "message")));
-        self.dae.assertions.truncate(asserted);
+        parts.extend(self.parts_of_message(nth(arguments, 0, "message"), loops));
         let condition = self.dae.pool.not(guard);
         let message = Assertion::new(condition, parts, Level::Message, span);
         self.dae.events.assertions.push(message);

@@ -155,21 +155,18 @@ impl ConditionalValues for Builder<'_> {
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
-        self.execution.asserted.push(self.dae.assertions.len());
-        Branch { condition, values: Vec::new() }
+        Branch { condition, values: Vec::new(), asserted: self.dae.assertions.len() }
     }
 
     fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
         branch.values = values.to_vec();
-        let from = self.execution.asserted.pop().unwrap_or(usize::MAX);
-        self.guard_assertions(from, branch.condition);
-        self.execution.asserted.push(self.dae.assertions.len());
+        self.guard_assertions(branch.asserted, branch.condition);
+        branch.asserted = self.dae.assertions.len();
     }
 
     fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
-        let from = self.execution.asserted.pop().unwrap_or(usize::MAX);
         let not = self.dae.pool.not(branch.condition);
-        self.guard_assertions(from, not);
+        self.guard_assertions(branch.asserted, not);
         let pairs = branch.values.iter().zip(values);
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }

@@ -306,6 +306,14 @@ fn an_assertion_at_an_event_holds_at_that_event_only() {
     assert_eq!(program.explain(&error).code.slug, "assertion-failed");
 }
 
+/// What lowering tries and gives up does not take an assertion out of its branch.
+#[test]
+fn an_assertion_in_a_branch_holds_there_only() {
+    let run = simulated(&file("Guarded"), 3.0);
+    assert_eq!(run.at("y", 1.5), 0.0);
+    near(run.last("y"), 3.0_f64.sqrt() + 3.0, 1e-7);
+}
+
 #[test]
 fn a_sample_next_to_an_output_point_is_not_lost() {
     // 12·0.05 and 15·0.04 differ by rounding.

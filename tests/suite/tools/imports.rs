@@ -665,6 +665,7 @@ fn the_semantic_suite_of_sbml_has_its_results() {
         .filter_map(|case| Some(format!("{}: {}", case.name, case.fault()?.lines().next()?)))
         .collect();
     eprintln!("{} of {} cases\n{}", cases.len() - wrong.len(), cases.len(), wrong.join("\n"));
+    assert!(!cases.is_empty(), "`GAPILIB_SBML` names a folder without cases");
     assert!(wrong.len() * 100 <= 3 * cases.len(), "{}", wrong.join("\n"));
 }
 
@@ -676,7 +677,7 @@ fn problems_of_the_benchmark_collection_are_imported() {
     let mut folders: Vec<PathBuf> =
         fs::read_dir(collection).unwrap().map(|own| own.unwrap().path()).collect();
     folders.sort();
-    let mut wrong = Vec::new();
+    let (mut wrong, mut imported) = (Vec::new(), 0);
     for path in folders {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         let own = path.join(format!("{name}.yaml"));
@@ -690,9 +691,11 @@ fn problems_of_the_benchmark_collection_are_imported() {
         }
         let (checked, out, more) = gapi(&here, &["check", "p"]);
         eprintln!("{name}: imported");
+        imported += 1;
         if code != 0 || checked != 0 {
             wrong.push(format!("{name}: {errors}{out}{more}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(imported > 0, "`GAPILIB_PETAB` names a folder without problems");
 }

@@ -72,6 +72,8 @@ pub(crate) enum Choice<S> {
 pub(crate) struct Branch<S> {
     /// Its condition.
     pub(crate) condition: S,
+    /// How many assertions there were when the branch at hand began.
+    pub(crate) asserted: usize,
     /// Values of the first branch.
     pub(crate) values: Vec<S>,
 }

@@ -37,6 +37,7 @@ use instances::Output;
 pub(super) use inverse::{Inverts, inverts};
 pub(crate) use notices::warning_of;
 pub(super) use on_demand::OnDemand;
+pub(super) use repeated::Before;
 pub(super) use results::CallResults;
 
 use super::builder::{Builder, MAX_STATEMENTS};
@@ -78,7 +79,7 @@ pub(super) fn call(
     if let Some(results) = repeated::repeat(builder, function, &arguments) {
         return Ok(results);
     }
-    let before = repeated::Before::new(builder);
+    let before = Before::new(builder);
     let results = inlined_or_compiled(builder, function, arguments.clone(), span)?;
     repeated::remember(builder, function, arguments, &before, &results);
     Ok(results)
@@ -95,7 +96,7 @@ fn inlined_or_compiled(
     {
         return Ok(outputs);
     }
-    let (asserted, warned) = (builder.dae.assertions.len(), builder.dae.warnings.len());
+    let before = Before::new(builder);
     let error = match inline(builder, function, arguments.clone(), span) {
         Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
         result => return result,
@@ -104,8 +105,7 @@ fn inlined_or_compiled(
     if too_big && builder.calls.depth > 0 {
         return Err(error);
     }
-    builder.dae.assertions.truncate(asserted);
-    builder.dae.warnings.truncate(warned);
+    before.restore(builder);
     let mut result = compiled_call(builder, function, arguments.clone(), span);
     if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
         && evaluate_whole_numbers(builder, function, &mut arguments)

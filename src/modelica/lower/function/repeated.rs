@@ -9,7 +9,7 @@ use crate::symbolic::Expr;
 use std::sync::Arc;
 
 /// How much a model had before a call.
-pub(super) struct Before {
+pub(in crate::lower) struct Before {
     counts: [usize; 5],
     assertions: usize,
     inlined: usize,
@@ -28,9 +28,17 @@ fn counts(builder: &Builder<'_>) -> [usize; 5] {
 }
 
 impl Before {
-    pub(super) fn new(builder: &Builder<'_>) -> Before {
+    pub(in crate::lower) fn new(builder: &Builder<'_>) -> Before {
         let assertions = builder.dae.assertions.len();
         Before { counts: counts(builder), assertions, inlined: builder.calls.inlined }
+    }
+
+    /// Takes back what an attempt said that has failed.
+    pub(in crate::lower) fn restore(&self, builder: &mut Builder<'_>) {
+        let [_, _, warnings, _, written] = self.counts;
+        builder.dae.assertions.truncate(self.assertions);
+        builder.dae.warnings.truncate(warnings);
+        builder.calls.written.truncate(written);
     }
 }
 

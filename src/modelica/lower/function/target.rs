@@ -162,7 +162,7 @@ impl ConditionalValues for Body<'_, '_> {
     fn begin_if(&mut self, condition: Operand) -> Branch<Operand> {
         let skip = self.emitter.jump_unless(condition);
         self.branches.push(skip);
-        Branch { condition, values: Vec::new() }
+        Branch { condition, values: Vec::new(), asserted: 0 }
     }
 
     fn begin_else(&mut self, branch: &mut Branch<Operand>, values: &[Operand]) {
