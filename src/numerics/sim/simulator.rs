@@ -205,14 +205,13 @@ impl Simulator {
         if let Some(kind) = refused(settings, integrator, system) {
             return Err(SimError { time: settings.start, kind, offending: None });
         }
-        let budget = StepBudget::new(settings.start, settings.max_steps, settings.max_total_steps);
         let mut system = Sliding::new(system);
         let mut run = Run {
             problem: Problem {
                 system: &mut system,
                 nominal: self.nominals.plain(),
                 settings,
-                budget,
+                budget: StepBudget::new(settings),
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut self.statistics,
                 elapsed: 0.0,

@@ -13,6 +13,8 @@ pub(in crate::lower) struct Before {
     counts: [usize; 5],
     assertions: usize,
     inlined: usize,
+    /// Where in an expression it was.
+    raw: usize,
 }
 
 fn counts(builder: &Builder<'_>) -> [usize; 5] {
@@ -30,7 +32,8 @@ fn counts(builder: &Builder<'_>) -> [usize; 5] {
 impl Before {
     pub(in crate::lower) fn new(builder: &Builder<'_>) -> Before {
         let assertions = builder.dae.assertions.len();
-        Before { counts: counts(builder), assertions, inlined: builder.calls.inlined }
+        let (inlined, raw) = (builder.calls.inlined, builder.execution.raw);
+        Before { counts: counts(builder), assertions, inlined, raw }
     }
 
     /// Takes back what an attempt said that has failed.
@@ -39,6 +42,7 @@ impl Before {
         builder.dae.assertions.truncate(self.assertions);
         builder.dae.warnings.truncate(warnings);
         builder.calls.written.truncate(written);
+        builder.execution.raw = self.raw;
     }
 }
 

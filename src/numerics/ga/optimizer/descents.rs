@@ -39,6 +39,9 @@ const IMPROVED: f64 = 1e-3;
 const SELDOM: usize = 5;
 /// Steps of a descent in one round; most of the problems of NIST need fewer.
 const STEPS: usize = 40;
+/// So many descents whose steps were used up are continued in each round: in long valleys the best one at
+/// the time may lead to a worse minimum than others.
+const CONTINUED: usize = 3;
 /// Steps to make the best minimum finer.
 const FINE_STEPS: usize = 100;
 /// Individuals nearer than this in every gene are the same start.
@@ -84,8 +87,7 @@ impl Pool {
     pub fn begin(&mut self, starts: Vec<Vec<f64>>, [independent, short]: [usize; 2]) {
         self.active.clear();
         self.rounds.push((self.descents.len(), self.smallest()));
-        let open = |k: &usize| !self.descents[*k].has_ended();
-        if let Some(open) = self.smallest_of(open) {
+        for open in self.open() {
             self.descents[open].grant(STEPS, COARSE);
             self.active.push(open);
         }
@@ -101,6 +103,16 @@ impl Pool {
             self.independent.push(number < independent);
         }
         self.shares = vec![0; self.active.len()];
+    }
+
+    /// The best of the descents whose steps were used up.
+    fn open(&self) -> Vec<usize> {
+        let sum = |k: &usize| self.descents[*k].sum();
+        let is_open = |k: &usize| !self.descents[*k].has_ended() && sum(k).is_finite();
+        let mut open: Vec<usize> = (0..self.descents.len()).filter(is_open).collect();
+        open.sort_by(|a, b| sum(a).total_cmp(&sum(b)));
+        open.truncate(CONTINUED);
+        open
     }
 
     /// Whether short steps are shorter than a range.
@@ -179,15 +191,11 @@ impl Pool {
 
     /// The descent with the smallest sum of squares.
     fn best(&self) -> Option<usize> {
-        self.smallest_of(|_| true)
+        let sum = |k: &usize| self.descents[*k].sum();
+        let all = (0..self.descents.len()).filter(|k| sum(k).is_finite());
+        all.min_by(|a, b| sum(a).total_cmp(&sum(b)))
     }
 
-    fn smallest_of(&self, is_meant: impl Fn(&usize) -> bool) -> Option<usize> {
-        let sum = |k: &usize| self.descents[*k].sum();
-        (0..self.descents.len())
-            .filter(|k| sum(k).is_finite() && is_meant(k))
-            .min_by(|a, b| sum(a).total_cmp(&sum(b)))
-    }
 
     /// Where the best descent stands.
     pub(crate) fn best_place(&self) -> Option<&[f64]> {
