@@ -14,7 +14,7 @@ use crate::Session;
 use crate::codegen::Program;
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::fault;
-use crate::flatten::{self, FlatModel};
+use crate::flatten::{self, FlatModel, Variability};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
 use crate::mat::{Column, MatFile};
@@ -189,7 +189,8 @@ impl Source<'_> {
         let abscissa = self.abscissa(notes);
         let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.at(&["x"]))])?;
         let class = self.class(session, &abscissa, notes)?;
-        let translated = simulation::translated(session, &class.name)?;
+        let translated = simulation::translated(session, &class.name)
+            .map_err(|errors| self.set_variable(session).map_or(errors, |error| vec![error]))?;
         let program = translated.program.clone();
         self.check(session, &abscissa.name, &class, &translated)?;
         parameters::note_computed(&class.parameters, &translated, notes);
@@ -274,6 +275,24 @@ impl Source<'_> {
             parameters,
         };
         Ok((experiment, series))
+    }
+
+    /// Why the model is not solvable if a variable is set that its equations determine.
+    fn set_variable(&self, session: &mut Session) -> Option<Diagnostic> {
+        let flat = simulation::flattened(session, &self.file.model).ok()?.model;
+        let is_computed = |name: &&String| {
+            let variable = flat.variables.get(name.as_str());
+            variable.is_some_and(|own| {
+                own.variability > Variability::Parameter && own.causality.is_none()
+            })
+        };
+        let name = self.entry.set.values.keys().find(is_computed)?;
+        let fault = fault!(
+            BAD_OPTION,
+            "`{name}` is no parameter of `{}`: its equations determine it", self.file.model;
+            help: "for its value at the begin write `start = {{ {name} = … }}`"
+        );
+        Some(fault.at(self.entry.places.at(&["set", name])))
     }
 
     /// Refuses names that the model does not have, and values that it cannot be given.

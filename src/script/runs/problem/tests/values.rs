@@ -276,6 +276,16 @@ fn values_that_a_record_keeps_are_refused() {
     says(&kept, &["`own.a` cannot be set to 6", "| 6"]);
 }
 
+#[test]
+fn a_variable_that_equations_determine_is_not_set() {
+    let data = table("time,y", |t| (-0.5 * t).exp().to_string());
+    let head = "model = \"Cell\"\n[parameters]\nk = { min = 0.1, max = 10 }\n";
+    let experiment = "outputs = { x = \"y\" }\n";
+    let refused = found(head, &format!("{experiment}set = {{ x = 1 }}"), &data);
+    says(&refused, &["`x` is no parameter of `Cell`", "start = { x = ", "| 1"]);
+    value(&found(head, &format!("{experiment}start = {{ x = 1 }}"), &data), "k", 0.5);
+}
+
 /// y of the valve with K = 2, T = 1.5, open from 1 to 3.
 fn opened(t: f64, level: f64) -> f64 {
     let rise = |t: f64| 2.0 * level * (1.0 - (-t / 1.5).exp());
