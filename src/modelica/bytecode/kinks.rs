@@ -32,9 +32,7 @@ impl Code {
                 function.id.get().has_kinks()
             }
             Instruction::Relation { d, a, .. } => !self.is_asserted(*d) && !self.counts(*a),
-            Instruction::External { external } => {
-                !self.externals[*external as usize].only_fails()
-            }
+            Instruction::External { external } => !self.externals[*external as usize].only_fails(),
             _ => false,
         }
     }

@@ -211,7 +211,11 @@ impl Simulator {
                 system: &mut system,
                 nominal: self.nominals.plain(),
                 settings,
-                budget: StepBudget::new(settings),
+                budget: StepBudget::new(
+                    settings.start,
+                    settings.max_steps,
+                    settings.max_total_steps,
+                ),
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut self.statistics,
                 elapsed: 0.0,

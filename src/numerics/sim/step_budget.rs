@@ -3,8 +3,6 @@
 //! A model that switches ten thousand times a second needs millions of steps for its minutes, and
 //! says so by its pace. A simulation that is stuck does not come to its end at any number of them.
 
-use super::Settings;
-
 /// What is allowed, and where that was last extended.
 #[derive(Debug, Clone, Copy)]
 pub struct StepBudget {
@@ -19,9 +17,8 @@ pub struct StepBudget {
 }
 
 impl StepBudget {
-    /// That of a simulation at its begin.
-    pub fn new(settings: &Settings) -> StepBudget {
-        let Settings { start, max_steps, max_total_steps, .. } = *settings;
+    /// Of a simulation that begins at a time, with steps that it may take in any case and at most.
+    pub fn new(start: f64, max_steps: u64, max_total_steps: u64) -> StepBudget {
         let (half, most) = (max_steps / 2, max_total_steps);
         StepBudget { allowed: max_steps, half, most, since: (start, 0) }
     }

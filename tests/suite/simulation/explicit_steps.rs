@@ -149,8 +149,7 @@ fn a_kink_without_events_is_left_to_the_implicit_method() {
     let (at, values) = (times(), values());
     let values: Vec<f64> = values.iter().map(|value| value - 1.5).collect();
     let input: Recorded<'_> = ("u", true, &at, &values);
-    let kinks =
-        ["noEvent(if x > 0 then x else 0)", "max(x, 0)", "(x + abs(x))/2", "positive(x)"];
+    let kinks = ["noEvent(if x > 0 then x else 0)", "max(x, 0)", "(x + abs(x))/2", "positive(x)"];
     let ends = kinks.map(|kink| {
         let program = program(&text.replace("KINK", kink), &[input]);
         let (free, statistics) = run(&mut observing(&program, "y"), true, 1e-6);

@@ -2,8 +2,8 @@
 
 use crate::diag::{Code, Diagnostic, Fault};
 use crate::eval::{
-    Callee, Function, FunctionBody, FunctionComponent, Host, Scope, ScriptHost,
-    ValueType, evaluate, evaluate_dimensions,
+    Callee, Function, FunctionBody, FunctionComponent, Host, Scope, ScriptHost, ValueType,
+    evaluate, evaluate_dimensions,
 };
 use crate::name::{Ident, Name};
 use crate::source::Span;

@@ -196,7 +196,6 @@ impl Pool {
         all.min_by(|a, b| sum(a).total_cmp(&sum(b)))
     }
 
-
     /// Where the best descent stands.
     pub(crate) fn best_place(&self) -> Option<&[f64]> {
         self.best().map(|best| self.descents[best].places()[1])
