@@ -8,7 +8,6 @@ use super::integrators::{Exact, Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
-use super::step_budget::StepBudget;
 use super::switches::Watch;
 use super::{
     DaeSystem, Effort, EventOutcome, Events, Failure, Offending, Residual, Sensitive, Settings,
@@ -207,19 +206,12 @@ impl Simulator {
         }
         let mut system = Sliding::new(system);
         let mut run = Run {
-            problem: Problem {
-                system: &mut system,
-                nominal: self.nominals.plain(),
+            problem: Problem::new(
+                &mut system,
+                self.nominals.plain(),
                 settings,
-                budget: StepBudget::new(
-                    settings.start,
-                    settings.max_steps,
-                    settings.max_total_steps,
-                ),
-                deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
-                statistics: &mut self.statistics,
-                elapsed: 0.0,
-            },
+                &mut self.statistics,
+            ),
             integrator,
             implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
             nonstiff: distance.map(|distance| (&mut self.nonstiff, distance)),

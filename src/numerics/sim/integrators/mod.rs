@@ -125,6 +125,27 @@ pub struct Problem<'a> {
     pub elapsed: f64,
 }
 
+impl<'a> Problem<'a> {
+    /// A simulation at its begin.
+    pub(super) fn new(
+        system: &'a mut Sliding<'a>,
+        nominal: &'a [f64],
+        settings: &'a Settings,
+        statistics: &'a mut Statistics,
+    ) -> Problem<'a> {
+        let Settings { start, max_steps, max_total_steps, .. } = *settings;
+        Problem {
+            system,
+            nominal,
+            settings,
+            statistics,
+            budget: StepBudget::new(start, max_steps, max_total_steps),
+            deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
+            elapsed: 0.0,
+        }
+    }
+}
+
 impl Problem<'_> {
     /// Evaluates the right-hand side; an error also if a value is not finite.
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), SimErrorKind> {
