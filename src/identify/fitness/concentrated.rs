@@ -19,7 +19,8 @@
 //! κ² = N / (Σ_given uᵢ² + Σ_g n_g + Σ_computed (uᵢ² + ½ (uᵢ² - 1)²)), near 1 where the deviations
 //! hold. The factors give the Fisher information: 2/σᵢ² of a deviation.
 //!
-//! Outputs whose errors at one instant are correlated are in `joint.rs`.
+//! Outputs whose errors at one instant are correlated are in `joint.rs`; where their covariance is given,
+//! factors are κ² times that as well.
 //!
 //! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 2.2 and chapter 11.
 
@@ -280,7 +281,9 @@ impl Fitness for Concentrated {
         let root = growth.sqrt();
         let kappa = (n / (scales.given_squares + scales.computed_squares)).sqrt();
         let is_computed = self.n_measured < n;
-        let per = if is_computed { 1.0 / kappa } else { kappa / part };
+        // Far away κ is small, and steps were by κ² too short.
+        let is_given = self.joints.iter().any(|own| own.given.is_some());
+        let per = if is_computed || is_given { 1.0 / kappa } else { kappa / part };
         for (k, &(law, deviation)) in self.points.iter().enumerate() {
             if let Deviation::Of(point) = deviation {
                 let sigma = simulated[k];

@@ -40,11 +40,15 @@ fn draw<'a>(
     }
 }
 
-/// A curve in the units of the data.
+/// A curve in the units of the data, of logarithms where these are compared.
 fn scaled(series: &SolvedSeries, mut curve: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let scale = series.scale.as_ref().map_or(1.0, |own| own.value);
     let offset = series.offset.as_ref().map_or(0.0, |own| own.value);
     curve.iter_mut().for_each(|point| point[1] = scale * point[1] + offset);
+    if series.is_logarithmic {
+        curve.retain(|point| point[1] > 0.0);
+        curve.iter_mut().for_each(|point| point[1] = elementary::ln(point[1]));
+    }
     curve
 }
 

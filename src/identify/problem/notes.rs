@@ -42,6 +42,7 @@ pub fn findings(
     findings.extend(run.conclusion.findings.clone());
     findings.extend(super::error_model::decided(&run.problem.series));
     findings.extend(estimated(run, solution));
+    findings.extend(solution.series.iter().filter_map(without_scale));
     findings.extend(equal_columns(run, statistics));
     findings.extend(dominant(run, statistics));
     findings.extend(residual_findings(
@@ -222,6 +223,22 @@ fn estimated(run: &Run, solution: &Solution) -> Option<Finding> {
         sigmas.iter().map(|text| text.trim()).collect::<Vec<_>>().join(", ")
     );
     Some(Finding::new(FindingKind::ErrorModel, sentence).severity(Severity::Information))
+}
+
+/// A series that the model follows with a negative scale only.
+fn without_scale(series: &SolvedSeries) -> Option<Finding> {
+    series.scale.as_ref().filter(|own| own.value == 0.0)?;
+    let name = match series.experiment.is_empty() {
+        true => series.y[0].clone(),
+        false => format!("{} / {}", series.experiment, series.y[0]),
+    };
+    let sentence = format!(
+        "The scale of {name} is 0: no positive one fits better than none, so that these data say \
+         nothing about the parameters. Check the variable and the column, or allow a negative scale, \
+         `scale = {{ sign = \"any\" }}`."
+    );
+    let finding = Finding::new(FindingKind::ScaleOfOutputs, sentence).severity(Severity::Serious);
+    Some(finding.series(&name))
 }
 
 fn equal_columns(run: &Run, statistics: &Statistics) -> Vec<Finding> {

@@ -372,6 +372,9 @@ pub struct SolvedSeries {
     /// Predictions over several samples, where they were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ahead: Option<PredictedAhead>,
+    /// Whether logarithms are compared.
+    #[serde(skip)]
+    pub(super) is_logarithmic: bool,
     /// Whether the points are no simulated values, so that no curve goes through them.
     #[serde(skip)]
     pub(super) has_no_curve: bool,
@@ -402,6 +405,7 @@ impl SolvedSeries {
             script: Vec::new(),
             simulation: Vec::new(),
             ahead: None,
+            is_logarithmic: false,
             has_no_curve: false,
         };
         solved.measure();

@@ -121,6 +121,7 @@ impl Solution {
             rest = others;
             own.is_data().then(|| {
                 let mut solved = SolvedSeries::new(own, simulated);
+                solved.is_logarithmic = run.problem.inference.logarithmic.contains(&number);
                 if let Some(own) = &scaled {
                     [solved.scale, solved.offset] = own.solved(number, &[]);
                 }
@@ -292,6 +293,7 @@ fn solved_series(
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
+        solved.is_logarithmic = problem.inference.logarithmic.contains(&number);
         if let Some(own) = &statistics.explicit {
             [solved.scale, solved.offset] = own.solved(number, &errors);
         }

@@ -153,6 +153,11 @@ fn scale_and_offset_are_those_of_a_model_with_parameters() {
     let error = "column = \"ratio\", error = \"lognormal\", sigma = \"estimate\"";
     let relative = format!("signal = {{ {error}, scale = \"estimate\" }}");
     let (one, _) = solved(&folder, "logarithm", &problem("", &relative));
+    // The curve goes through the simulated points.
+    let series = &one["series"][0];
+    let curve = series["curve"].as_array().unwrap();
+    let at = curve.iter().find(|point| point[0] == series["points"][4][0]).unwrap();
+    near(&at[1], &series["points"][4][2], 1e-9);
     let explicit = problem(s, &format!("scaled = {{ {error} }}"));
     let (other, _) = solved(&folder, "explicit", &explicit);
     are_alike(&one, &other, &[(0, "scale", "s")]);
@@ -214,6 +219,14 @@ fn a_scale_is_positive_unless_it_may_have_any_sign() {
     let scale = positive["series"][0]["scale"]["value"].as_f64().unwrap();
     assert!(scale >= 0.0, "{scale}");
     assert!(positive["fitness"].as_f64() > any["fitness"].as_f64());
+    // What only falls follows no rise.
+    let rises: String =
+        (0..12).map(|t| format!("{t},{}\n", 5.0 - 4.0 * (-0.4 * f64::from(t)).exp())).collect();
+    fs::write(folder.path().join("d.csv"), format!("time,blot\n{rises}")).unwrap();
+    let falling = output("\"estimate\"").replace("signal", "second");
+    let (zero, text) = solved(&folder, "zero", &problem("", &falling));
+    assert_eq!(zero["series"][0]["scale"]["value"], 0.0);
+    assert!(text.contains("The scale of run / second is 0: no positive one"), "{text}");
 }
 
 #[test]

@@ -99,6 +99,7 @@ class Problem(_Stated, total=False):
     title: str
     files: Sequence[_Path]
     noise: Mapping[str, Union[float, str, Mapping[str, Any]]]
+    covariance: Union[str, Sequence[Sequence[float]], Covariance]
     fitness: Union[str, Sequence[str], Mapping[str, Any]]
     method: Mapping[str, Any]
     stop: Mapping[str, float]
