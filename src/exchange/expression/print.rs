@@ -70,6 +70,8 @@ fn bare(expression: &Expression, context: Context) -> (String, u8) {
             (number(*value), if is_primary { level::PRIMARY } else { level::SUM })
         }
         Expression::Truth(value) => (value.to_string(), level::PRIMARY),
+        // A component of a model in Modelica.
+        Expression::Name(name) if name.contains(['.', '[']) => (name.clone(), level::PRIMARY),
         Expression::Name(name) => (identifier(name), level::PRIMARY),
         Expression::Time => ("time".to_owned(), level::PRIMARY),
         Expression::Pre(name) => (format!("pre({})", identifier(name)), level::PRIMARY),

@@ -96,6 +96,9 @@ impl Reader<'_> {
                 empty.push(row.number_of_line());
                 continue;
             };
+            if value.is_infinite() {
+                return Err(row.wrong("the measurement is infinite"));
+            }
             let new = || Experiment {
                 condition: condition.to_owned(),
                 rest: rest.map(str::to_owned),

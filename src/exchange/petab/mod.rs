@@ -14,8 +14,10 @@ mod version2;
 pub use problem::ReadFile;
 
 use crate::Refusal;
+use crate::diag::Fault;
 use crate::expression::{Context, Expression, number, printed};
-use crate::names::{Names, identifier};
+use crate::names::{Names, identifier, quoted as comment};
+use crate::registry::BAD_OPTION;
 use crate::sbml::{self, Additions, Extended, Model};
 use experiments::{Experiment, Measured, Noise, Output, Reader, Sigma};
 use indexmap::IndexMap;
@@ -44,8 +46,10 @@ struct Problem {
     conditions: IndexMap<String, table::Row>,
     /// Names in the model of those that tables use.
     mapping: BTreeMap<String, String>,
-    /// The words of a model in Modelica, to which nothing is added.
+    /// The words of a model in Modelica.
     in_modelica: Option<BTreeSet<String>>,
+    /// The name and the text of a class that extends such a model, where variables are added to it.
+    extension: Option<(String, String)>,
 }
 
 /// The files of the problem `name` that a YAML file describes; `read` gives the files beside it.
@@ -67,9 +71,15 @@ pub fn import(name: &str, yaml: &str, read: ReadFile<'_>) -> Result<Imported, Re
     problem.in_modelica = Some(words(&text));
     problem.decide_noise(&words(&text))?;
     problem.check_modelica()?;
+    problem.extension = problem.extension_of(&class);
     let set = problem.conditions.values().flat_map(targets);
     let set = set.map(|(name, _)| (name.to_owned(), name.to_owned())).collect();
-    let extended = Extended { model: Model { name: class, text }, set, at_rest: BTreeMap::new() };
+    let extended = Extended {
+        model: Model { name: class, text },
+        set,
+        flags: BTreeMap::new(),
+        at_rest: BTreeMap::new(),
+    };
     problem.files(&extended, &model)
 }
 
@@ -112,6 +122,7 @@ impl Problem {
             conditions,
             mapping: tables.mapping,
             in_modelica: None,
+            extension: None,
         })
     }
 
@@ -217,22 +228,65 @@ impl Problem {
         Ok(())
     }
 
-    /// Refuses what a model in Modelica would have to be extended by.
-    fn check_modelica(&self) -> Result<(), Refusal> {
-        for output in &self.measured.outputs {
-            if !matches!(output.formula, Expression::Name(_)) {
-                let row = &self.observables[output.observable].row;
-                let message = "the observable of a model in Modelica is a formula, not a variable, \
-                               which is not supported";
-                return Err(row.wrong(message));
+    /// Refuses conditions that set what rules of the model compute.
+    fn check_targets(&self, computed: &BTreeSet<String>) -> Result<(), Refusal> {
+        for row in self.conditions.values() {
+            if let Some((column, _)) = targets(row).find(|(column, _)| computed.contains(*column)) {
+                let message = format!("a rule of the model determines `{column}` at all times");
+                let fault = Fault::new(BAD_OPTION, message)
+                    .help("set what the rule depends on, or remove the rule from the model");
+                return Err(row.refusal(fault));
             }
         }
+        Ok(())
+    }
+
+    /// Refuses what a model in Modelica would have to be extended by.
+    fn check_modelica(&self) -> Result<(), Refusal> {
         let before = self.measured.experiments.iter().find_map(|own| own.rest.as_ref());
         match before {
             Some(rest) => Err(self.conditions[rest.as_str()]
                 .wrong("a steady state before, with a model in Modelica, is not supported")),
             None => Ok(()),
         }
+    }
+
+    /// A class that has the observables and deviations that are formulas, besides the variables of a model
+    /// in Modelica.
+    fn extension_of(&self, class: &str) -> Option<(String, String)> {
+        let is_formula = |own: &&Output| !matches!(own.formula, Expression::Name(_));
+        let outputs = self.measured.outputs.iter().filter(is_formula);
+        let outputs = outputs.map(|own| {
+            let title = self.observables[own.observable].title.clone();
+            (own.name.clone(), title, own.formula.clone())
+        });
+        let deviations = self.variables_of_noise().map(|(name, formula)| {
+            (name, "standard deviation of the measurements".to_owned(), formula)
+        });
+        let added: Vec<_> = outputs.chain(deviations).collect();
+        if added.is_empty() {
+            return None;
+        }
+        let name = format!("{}_observed", class.rsplit('.').next().unwrap_or(class));
+        let mut text =
+            format!("model {name} \"{class} with what is observed\"\n  extends {class};\n");
+        let known = self.in_modelica.clone().unwrap_or_default();
+        let used: BTreeSet<String> = added.iter().flat_map(|(_, _, own)| own.names()).collect();
+        for own in self.parameters.values().filter(|own| used.contains(&own.id)) {
+            if !known.contains(&own.id) && !self.mapping.contains_key(&own.id) {
+                let value = number(own.nominal.unwrap_or(1.0));
+                _ = writeln!(text, "  parameter Real {} = {value};", identifier(&own.id));
+            }
+        }
+        let mapped = self.mapping.iter().map(|(id, own)| (id.clone(), Expression::name(own)));
+        let mapped = mapped.collect();
+        for (name, title, formula) in added {
+            let formula = printed(&formula.substituted(&mapped), Context::Real);
+            let title = if title.is_empty() { title } else { format!(" {}", comment(&title)) };
+            _ = writeln!(text, "  Real {} = {formula}{title};", identifier(&name));
+        }
+        _ = writeln!(text, "end {name};");
+        Some((name, text))
     }
 
     /// A name in the model, as a key of the problem file.
@@ -284,6 +338,7 @@ impl Problem {
     fn model(&self, text: &str) -> Result<Extended, Refusal> {
         let symbols = sbml::symbols(text)?;
         self.check_names(&symbols)?;
+        self.check_targets(&sbml::computed(text)?)?;
         let deviations = self.deviations();
         let parameters =
             self.parameters.values().filter(|own| !deviations.contains(own.id.as_str()));
@@ -318,8 +373,10 @@ impl Problem {
     }
 
     fn files(&self, extended: &Extended, model_file: &str) -> Result<Imported, Refusal> {
-        let class = &extended.model.name;
+        let extension = self.extension.as_ref();
+        let class = extension.map_or(&extended.model.name, |(name, _)| name);
         let model_file = file_name(model_file);
+        let own_file = extension.map(|(name, _)| format!("{}.mo", file_name(name)));
         let mut text = String::new();
         _ = writeln!(
             text,
@@ -327,9 +384,12 @@ impl Problem {
         );
         _ = writeln!(text, "title = {}", quoted(&self.name));
         _ = writeln!(text, "model = {}", quoted(&identifier(class)));
-        _ = writeln!(text, "files = [{}]\n\n[parameters]", quoted(&model_file));
+        let names: Vec<String> =
+            [&model_file].into_iter().chain(&own_file).map(|own| quoted(own)).collect();
+        _ = writeln!(text, "files = [{}]\n\n[parameters]", names.join(", "));
         self.write_parameters(&mut text);
         let mut files = vec![(model_file, extended.model.text.clone())];
+        files.extend(own_file.zip(extension.map(|(_, text)| text.clone())));
         let mut names = Names::default();
         let mut data_names = Names::default();
         for experiment in &self.measured.experiments {
@@ -371,7 +431,13 @@ impl Problem {
                 continue;
             }
             if deviations.contains(own.id.as_str()) {
-                _ = writeln!(text, "# {} is the sigma of an output, and estimated as such", own.id);
+                let [min, max] = own.range.map(number);
+                _ = writeln!(
+                    text,
+                    "# {} is the sigma of an output, and estimated as such.\n\
+                     # Its bounds {min} to {max} do not count.",
+                    own.id
+                );
                 continue;
             }
             let [min, max] = own.range.map(number);
@@ -440,14 +506,11 @@ impl Problem {
 
     /// The sigma of an output as the problem file has it.
     fn sigma(&self, output: &Output, sigma: Sigma) -> String {
-        match (sigma, &output.noise, &self.in_modelica) {
-            (Sigma::Number(value), ..) => number(value),
-            (Sigma::Column, ..) => quoted(&format!("{}_sigma", output.name)),
-            (Sigma::Estimated, ..) => quoted(&self.estimated(output)),
-            (Sigma::Variable, Noise::Formula(formula), Some(_)) => {
-                quoted(&printed(formula, Context::Real))
-            }
-            (Sigma::Variable, ..) => quoted(&identifier(&deviation(&output.name))),
+        match sigma {
+            Sigma::Number(value) => number(value),
+            Sigma::Column => quoted(&format!("{}_sigma", output.name)),
+            Sigma::Estimated => quoted(&self.estimated(output)),
+            Sigma::Variable => quoted(&identifier(&deviation(&output.name))),
         }
     }
 
@@ -468,8 +531,12 @@ impl Problem {
             for (row, parameter) in [Some((own, parameter)), of_rest].into_iter().flatten() {
                 let Some(value) = row.get(column) else { continue };
                 let entry = format!("{} = {}", self.in_model(parameter), self.value(row, value)?);
-                if !set.contains(&entry) {
-                    set.push(entry);
+                let flag = extended.flags.get(column);
+                let flag = flag.map(|flag| format!("{} = 1", self.in_model(flag)));
+                for entry in [entry].into_iter().chain(flag) {
+                    if !set.contains(&entry) {
+                        set.push(entry);
+                    }
                 }
             }
         }
@@ -498,7 +565,10 @@ impl Problem {
             .filter_map(|name| Some((name.clone(), Expression::Number(fixed(&name)?))));
         let own = own.substituted(&values.collect());
         if let Some(value) = own.value() {
-            return Ok(number(value));
+            return match value.is_finite() {
+                true => Ok(number(value)),
+                false => Err(row.wrong(format!("the value `{text}` is not finite"))),
+            };
         }
         match own.names().iter().find(|name| !self.parameters.contains_key(name.as_str())) {
             Some(name) => Err(row.wrong(format!("`{name}` is not a parameter of the problem"))),

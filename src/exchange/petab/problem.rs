@@ -1,6 +1,6 @@
 //! What a PEtab problem consists of: the files that its YAML file names, and their rows.
 
-use super::table::{Row, rows};
+use super::table::{Row, refuse_columns, rows};
 use crate::Refusal;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
@@ -109,6 +109,9 @@ pub(super) fn read(
         all(problem, "observable_files", &["observableId", "observableFormula", "noiseFormula"])?;
     let required = ["observableId", "simulationConditionId", "measurement", "time"];
     let measurements = all(problem, "measurement_files", &required)?;
+    refuse_columns(&parameters, &["priorDistribution", "priorParameters"], 1)?;
+    refuse_columns(&observables, &["observablePlaceholders", "noisePlaceholders"], 1)?;
+    refuse_columns(&measurements, &["experimentId"], 1)?;
     let mut conditions = IndexMap::new();
     for row in all(problem, "condition_files", &["conditionId"])? {
         let name = row.required("conditionId")?.to_owned();

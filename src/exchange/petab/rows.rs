@@ -63,8 +63,8 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         return Err(row.wrong(format!("the scale `{scale}` is not `lin`, `log` or `log10`")));
     }
     let estimated = match row.get("estimate") {
-        Some("1" | "1.0" | "true") => true,
-        Some("0" | "0.0" | "false") => false,
+        Some("1" | "1.0" | "true" | "True") => true,
+        Some("0" | "0.0" | "false" | "False") => false,
         other => {
             let other = other.unwrap_or_default();
             return Err(row.wrong(format!("`estimate` is `{other}`, neither 0 nor 1")));
@@ -86,6 +86,15 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         let [low, high] = range;
         return Err(row.wrong(format!("the bounds of `{id}` are {low} and {high}")));
     }
+    let is_log = scale != "lin" || prior.as_ref().is_some_and(|own| is_of_logarithm(own));
+    if estimated && is_log && range[0] <= 0.0 {
+        let what = if scale == "lin" { "a prior of its logarithm" } else { "a logarithmic scale" };
+        let [low, _] = range;
+        return Err(row.wrong(format!("`{id}` has {what}, but its lowerBound is {low}")));
+    }
+    if !estimated && row.number("nominalValue")?.is_none() {
+        return Err(row.wrong(format!("`{id}` is not estimated, and has no `nominalValue`")));
+    }
     if let Some([lower, upper]) = within {
         range = [range[0].max(lower), range[1].min(upper)];
         if range[0] >= range[1] {
@@ -101,6 +110,13 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         prior,
         id,
     })
+}
+
+/// Whether a prior, as a problem file has it, is one of the logarithm.
+fn is_of_logarithm(prior: &str) -> bool {
+    prior.contains("factor =")
+        || prior.contains("\"lognormal\"")
+        || prior.contains("\"loguniform\"")
 }
 
 /// The numbers of a column, separated by semicolons.
@@ -136,13 +152,18 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         true => [first, second].map(|value| crate::elementary::powf(unit, value)),
         false => [first, second],
     };
-    let [low, high] = [a, b].map(number);
     // In version 2, bounds truncate the density.
-    let bounds = [row.get("lowerBound"), row.get("upperBound")];
-    let within = match (row.get("priorDistribution"), bounds) {
-        (Some(_), [Some(min), Some(max)]) => format!(", min = {min}, max = {max}"),
+    let bounds = [row.number("lowerBound")?, row.number("upperBound")?];
+    let bounds = bounds.map(|own| own.filter(|_| row.get("priorDistribution").is_some()));
+    let within = match bounds {
+        [Some(min), Some(max)] => format!(", min = {}, max = {}", number(min), number(max)),
         _ => String::new(),
     };
+    let [a, b] = match (bounds, is_uniform) {
+        ([Some(min), Some(max)], true) => [a.max(min), b.min(max)],
+        _ => [a, b],
+    };
+    let [low, high] = [a, b].map(number);
     let text = match (kind, is_on_scale) {
         ("uniform" | "parameterScaleUniform", false) => {
             format!("{{ distribution = \"uniform\", min = {low}, max = {high} }}")

@@ -17,11 +17,34 @@ pub(super) struct Row {
     cells: Vec<String>,
 }
 
+/// Columns that may be missing.
+const OPTIONAL: &[&str] = &[
+    "parameterName",
+    "objectivePriorType",
+    "objectivePriorParameters",
+    "priorDistribution",
+    "priorParameters",
+    "observableName",
+    "observableTransformation",
+    "observableParameters",
+    "observablePlaceholders",
+    "noiseParameters",
+    "noisePlaceholders",
+    "noiseDistribution",
+    "preequilibrationConditionId",
+    "experimentId",
+    "conditionName",
+    "nominalValue",
+    "lowerBound",
+    "upperBound",
+];
+
 /// The rows of a table.
 ///
 /// # Errors
 ///
-/// Required columns that are missing, columns of one name, and cells without a column.
+/// Required columns that are missing, columns of one name, known names in other letters, and cells without
+/// a column.
 pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>, Refusal> {
     let name: Rc<str> = file.into();
     let mut heading: Option<(Rc<BTreeMap<String, usize>>, usize)> = None;
@@ -46,6 +69,11 @@ pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>
                 let fault = Fault::new(BAD_OPTION, format!("there is no column `{missing}`"));
                 return Err(Refusal::new(place, fault).in_file(file));
             }
+            if let Some((own, known)) = in_other_letters(&cells) {
+                let fault = Fault::new(BAD_OPTION, format!("`{own}` is no column of PEtab"))
+                    .help(format!("write `{known}`"));
+                return Err(Refusal::new(place, fault).in_file(file));
+            }
             let width = cells.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1);
             let columns = cells.into_iter().take(width).enumerate().map(|(k, name)| (name, k));
             heading = Some((Rc::new(columns.collect()), width));
@@ -61,6 +89,33 @@ pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>
         rows.push(row);
     }
     Ok(rows)
+}
+
+/// A column whose name differs from a known one in its letters alone, and that.
+fn in_other_letters(names: &[String]) -> Option<(&str, &'static str)> {
+    names.iter().find_map(|own| {
+        let is_alike = |known: &&&str| own.eq_ignore_ascii_case(known) && *own != ***known;
+        Some((own.as_str(), *OPTIONAL.iter().find(is_alike)?))
+    })
+}
+
+/// Refuses columns that only another version of PEtab has, where they say something.
+///
+/// # Errors
+///
+/// The first such cell.
+pub(super) fn refuse_columns(rows: &[Row], of_other: &[&str], version: u8) -> Result<(), Refusal> {
+    for row in rows {
+        if let Some(name) = of_other.iter().find(|name| row.get(name).is_some()) {
+            let fault = Fault::new(
+                BAD_OPTION,
+                format!("version {version} of PEtab has no column `{name}`"),
+            )
+            .help("remove it, or correct `format_version` in the YAML file");
+            return Err(row.refusal(fault));
+        }
+    }
+    Ok(())
 }
 
 /// A name that several columns have.

@@ -2,7 +2,7 @@
 //! one by one, and placeholders and priors have the names that they had before.
 
 use super::problem::{File, Language, Tables, all_rows, entry};
-use super::table::Row;
+use super::table::{Row, refuse_columns};
 use crate::Refusal;
 use indexmap::IndexMap;
 use saphyr::MarkedYaml;
@@ -35,6 +35,10 @@ pub(super) fn read(
     let changes = rows("condition_files", &["conditionId", "targetId", "targetValue"], false)?;
     let experiments = rows("experiment_files", &["experimentId", "time", "conditionId"], false)?;
     let mapped = rows("mapping_files", &["petabEntityId", "modelEntityId"], false)?;
+    refuse_columns(&parameters, &["objectivePriorType", "objectivePriorParameters"], 2)?;
+    refuse_columns(&observables, &["observableTransformation"], 2)?;
+    let of_version_1 = ["simulationConditionId", "preequilibrationConditionId"];
+    refuse_columns(&measurements, &of_version_1, 2)?;
     let mut mapping = BTreeMap::new();
     for row in &mapped {
         if let Some(own) = row.get("modelEntityId") {

@@ -24,6 +24,7 @@ struct Parts {
 
 /// Translates all events.
 pub(super) fn translate(own: &mut Translation<'_>) -> Result<(), Refusal> {
+    own.document.events.iter_mut().for_each(|event| at_an_instant(&mut event.trigger));
     let events = own.document.events.clone();
     events.iter().try_for_each(|event| check(own, event))?;
     match is_simple(&events) {
@@ -31,6 +32,19 @@ pub(super) fn translate(own: &mut Translation<'_>) -> Result<(), Refusal> {
         false => general(own, &events),
     }
     own.check_size()
+}
+
+/// A trigger `time == t` is true at an instant, which no step needs to meet: from then on it stays true.
+fn at_an_instant(trigger: &mut Expression) {
+    let Expression::Call(function @ Function::Equal, sides) = trigger else { return };
+    if let [first, second] = sides.as_mut_slice() {
+        if *second == Expression::Time {
+            std::mem::swap(first, second);
+        }
+        if *first == Expression::Time {
+            *function = Function::GreaterOrEqual;
+        }
+    }
 }
 
 fn check(own: &Translation<'_>, event: &Event) -> Result<(), Refusal> {

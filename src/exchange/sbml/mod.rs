@@ -18,8 +18,8 @@ use crate::Refusal;
 use crate::expression::Expression;
 use document::{Document, Kind, Quantity, Rule};
 use roles::{Role, Roles};
-use std::collections::BTreeMap;
-use translation::Translation;
+use std::collections::{BTreeMap, BTreeSet};
+use translation::{Initial, Translation};
 
 pub(crate) use document::mentioned;
 
@@ -56,6 +56,8 @@ pub(crate) struct Additions {
 pub(crate) struct Extended {
     pub(crate) model: Model,
     pub(crate) set: BTreeMap<String, String>,
+    /// Parameters that are 1 where such a value counts.
+    pub(crate) flags: BTreeMap<String, String>,
     /// Those of the time before 0.
     pub(crate) at_rest: BTreeMap<String, String>,
 }
@@ -71,6 +73,14 @@ pub(crate) fn symbols(text: &str) -> Result<BTreeMap<String, bool>, Refusal> {
     });
     let reactions = document.reactions.iter().map(|own| (own.id.clone(), false));
     Ok(quantities.chain(reactions).collect())
+}
+
+/// What rules determine throughout.
+pub(crate) fn computed(text: &str) -> Result<BTreeSet<String>, Refusal> {
+    let document = document::read(text)?;
+    let roles = Roles::of(&document);
+    let own = document.quantities.iter().map(|own| own.id.clone());
+    Ok(own.filter(|id| [Role::Assigned, Role::Algebraic].contains(&roles.get(id))).collect())
 }
 
 /// Adds parameters and variables.
@@ -122,7 +132,12 @@ pub(crate) fn extended(text: &str, additions: Additions) -> Result<Extended, Ref
         });
     }
     let roles = Roles::of(&document);
-    let (mut set, mut at_rest) = (BTreeMap::new(), BTreeMap::new());
+    let (mut set, mut at_rest, mut flags) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+    let plain = BTreeMap::new();
+    let from_variables: Vec<String> = {
+        let plain = Translation::new(document.clone(), &plain)?;
+        requested.iter().filter(|id| plain.starts_from_variables(id)).cloned().collect()
+    };
     for id in requested {
         if switched.contains(&id) {
             let [rest, own] = document.switch(&id);
@@ -131,19 +146,26 @@ pub(crate) fn extended(text: &str, additions: Additions) -> Result<Extended, Ref
             continue;
         }
         let own = match roles.get(&id) {
-            Role::Constant => id.clone(),
+            Role::Constant if !from_variables.contains(&id) => id.clone(),
             _ => document.names.fresh(&format!("{id}_0")),
         };
+        if from_variables.contains(&id) {
+            flags.insert(id.clone(), document.names.fresh(&format!("{id}_is_set")));
+        }
         set.insert(id, own);
     }
     let name = document.id.clone();
     let initial = set.iter().filter(|(id, own)| id != own && !at_rest.contains_key(*id));
-    let initial: BTreeMap<String, String> =
-        initial.map(|(id, own)| (id.clone(), own.clone())).collect();
+    let initial: BTreeMap<String, Initial> = initial
+        .map(|(id, own)| {
+            let initial = Initial { value: own.clone(), is_set: flags.get(id).cloned() };
+            (id.clone(), initial)
+        })
+        .collect();
     let mut translation = Translation::new(document, &initial)?;
     events::translate(&mut translation)?;
     let text = translation.finish(&name);
-    Ok(Extended { model: Model { name, text }, set, at_rest })
+    Ok(Extended { model: Model { name, text }, set, flags, at_rest })
 }
 
 /// The model in an SBML document.

@@ -1,6 +1,6 @@
 //! A model of SBML as Modelica text.
 
-use super::document::{Document, Kind, Quantity, Species};
+use super::document::{Document, Kind, Quantity, Rule, Species};
 use super::mathml::MOST_PARTS;
 use super::roles::{Role, Roles, definition, reached};
 use crate::Refusal;
@@ -27,8 +27,8 @@ pub(super) struct Translation<'a> {
     pub(super) roles: Roles,
     /// The names of stored amounts of species whose symbols are concentrations.
     amounts: BTreeMap<String, String>,
-    /// Quantities whose initial values are parameters, with the names of these.
-    initial_parameters: &'a BTreeMap<String, String>,
+    /// Quantities whose initial values are parameters.
+    initial_parameters: &'a BTreeMap<String, Initial>,
     /// The initial value of each stored quantity.
     pub(super) start: BTreeMap<String, Expression>,
     /// Parameters that are known before the simulation.
@@ -36,6 +36,15 @@ pub(super) struct Translation<'a> {
     /// How many parts definitions in place of names have become.
     parts: Cell<usize>,
     pub(super) class: Class,
+}
+
+/// The parameters for an initial value.
+#[derive(Debug, Clone)]
+pub(super) struct Initial {
+    /// The value.
+    pub(super) value: String,
+    /// Whether it counts, where the model computes another one from variables: 0 or 1.
+    pub(super) is_set: Option<String>,
 }
 
 /// What comes after a declaration: the name and the unit.
@@ -61,7 +70,7 @@ impl<'a> Translation<'a> {
     /// Names that nothing declares, and initial values that nothing gives.
     pub(super) fn new(
         mut document: Document,
-        initial_parameters: &'a BTreeMap<String, String>,
+        initial_parameters: &'a BTreeMap<String, Initial>,
     ) -> Result<Translation<'a>, Refusal> {
         let roles = Roles::of(&document);
         let stored = document.quantities.iter().filter(|own| roles.stores_amount(own));
@@ -82,6 +91,7 @@ impl<'a> Translation<'a> {
             class: Class::default(),
         };
         own.check_names()?;
+        own.check_rules()?;
         own.check_cycles()?;
         own.check_algebraic()?;
         own.derivatives();
@@ -126,6 +136,46 @@ impl Translation<'_> {
             if let Some(name) = names.iter().find(|name| !known.contains(name.as_str())) {
                 let fault = Fault::new(BAD_OPTION, format!("nothing declares `{name}`"));
                 return Err(Refusal::new(place, fault));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses two rules of one kind for a name, and rules for species that reactions change.
+    fn check_rules(&self) -> Result<(), Refusal> {
+        let document = &self.document;
+        let refuse = |rule: &Rule, message: String, help: &str| {
+            Err(Refusal::new(rule.place.clone(), Fault::new(BAD_OPTION, message).help(help)))
+        };
+        let rules: Vec<&Rule> = document.assignments.iter().chain(&document.rates).collect();
+        let initial: Vec<&Rule> = document.initial.iter().collect();
+        for all in [&rules, &initial] {
+            for (place, rule) in all.iter().enumerate() {
+                if all[..place].iter().any(|other| other.variable == rule.variable) {
+                    let message = format!("`{}` has a rule above", rule.variable);
+                    return refuse(rule, message, "remove one of the two");
+                }
+            }
+        }
+        let reacts = |name: &str| {
+            let is_own = |(species, _): &(String, Expression)| species == name;
+            document
+                .reactions
+                .iter()
+                .any(|own| own.products.iter().chain(&own.reactants).any(is_own))
+        };
+        for rule in rules {
+            let quantity = self.quantity(&rule.variable);
+            let is_inner = quantity.is_some_and(
+                |own| matches!(&own.kind, Kind::Species(species) if !species.boundary),
+            );
+            if is_inner && reacts(&rule.variable) {
+                let message = format!("`{}` has a rule, and reactions change it", rule.variable);
+                return refuse(
+                    rule,
+                    message,
+                    "a species with a rule needs `boundaryCondition=\"true\"`",
+                );
             }
         }
         Ok(())
@@ -324,22 +374,10 @@ impl Translation<'_> {
             None => (name, comment),
         };
         let mut start = self.start.get(&own.id).cloned();
-        if let Some(parameter) = self.initial_parameters.get(&own.id) {
-            let size = self.size_of(&own.id);
-            let symbol = start.map(|value| match &size {
-                Some(size) => value.over(size.clone()),
-                None => value,
-            });
-            let value = symbol.map_or(String::new(), |value| format!(" = {}", real(&value)));
-            let text = format!(
-                "parameter Real {}{value} \"initial value of {}\";",
-                identifier(parameter),
-                own.id
-            );
-            self.class.declarations.push(text);
-            self.bound.insert(parameter.clone());
-            let value = Expression::name(parameter);
-            start = Some(match size {
+        if let Some(initial) = self.initial_parameters.get(&own.id) {
+            let symbol = start.map(|value| self.of_symbol(&own.id, value));
+            let value = self.initial_parameter(&own.id, initial, symbol);
+            start = Some(match self.size_of(&own.id) {
                 Some(size) => value.times(size),
                 None => value,
             });
@@ -357,6 +395,48 @@ impl Translation<'_> {
             Role::Discrete => self.varying("discrete Real", &stored, start, &comment),
         };
         self.class.declarations.push(text);
+    }
+
+    /// The value of a symbol for that of what is stored for it.
+    fn of_symbol(&self, name: &str, stored: Expression) -> Expression {
+        match self.size_of(name) {
+            Some(size) => stored.over(size),
+            None => stored,
+        }
+    }
+
+    /// Whether the initial value of a quantity depends on variables.
+    pub(super) fn starts_from_variables(&self, name: &str) -> bool {
+        let start = self.start.get(name).cloned();
+        start.is_some_and(|value| !self.is_bound(&self.of_symbol(name, value)))
+    }
+
+    /// Declares the parameters for an initial value, which is `usual` unless set; the value.
+    fn initial_parameter(
+        &mut self,
+        name: &str,
+        initial: &Initial,
+        usual: Option<Expression>,
+    ) -> Expression {
+        let value = Expression::name(&initial.value);
+        let parameter = identifier(&initial.value);
+        self.bound.insert(initial.value.clone());
+        let (Some(is_set), Some(usual)) = (&initial.is_set, &usual) else {
+            let usual = usual.map_or(String::new(), |own| format!(" = {}", real(&own)));
+            let text = format!("parameter Real {parameter}{usual} \"initial value of {name}\";");
+            self.class.declarations.push(text);
+            return value;
+        };
+        let flag = identifier(is_set);
+        self.class.declarations.push(format!(
+            "parameter Real {parameter} = 0 \"initial value of {name}, where {is_set} is 1\";"
+        ));
+        self.class.declarations.push(format!("parameter Real {flag} = 0;"));
+        self.bound.insert(is_set.clone());
+        let one = Expression::Number(1.0);
+        let condition =
+            Expression::call(Function::GreaterOrEqual, vec![Expression::name(is_set), one]);
+        Expression::Piecewise(vec![(value, condition)], Some(Box::new(usual.clone())))
     }
 
     /// What keeps its initial value.

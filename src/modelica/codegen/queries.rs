@@ -79,6 +79,12 @@ impl Program {
         })
     }
 
+    /// Whether a parameter follows from the initial equations, whatever value it is given.
+    pub fn is_solved_at_start(&self, name: &str) -> bool {
+        let dae = &self.sorted.dae;
+        self.values.solved.iter().any(|own| &*dae.variable(*own).name == name)
+    }
+
     /// The names of what the model computes, for a message; the first of many.
     fn unknown_names(&self) -> Option<String> {
         let is_unknown = |v: &&VariableInfo| !v.is_known() && !v.protected && &*v.name != "time";

@@ -222,6 +222,133 @@ fn laplace_noise_and_priors_are_imported() {
     assert!(written.contains(expected), "{written}");
 }
 
+/// Files of a problem in version 1 with the model, conditions, measurements and one observable y.
+fn small(model: &str, conditions: &str, measurements: &str) -> TempDir {
+    folder(&[
+        ("m.xml", model),
+        (
+            "p.yaml",
+            "format_version: 1\nparameter_file: p.tsv\nproblems:\n- sbml_files: [m.xml]\n  \
+                    condition_files: [c.tsv]\n  observable_files: [o.tsv]\n  \
+                    measurement_files: [m.tsv]\n",
+        ),
+        (
+            "p.tsv",
+            "parameterId\tparameterScale\tlowerBound\tupperBound\tnominalValue\testimate\n\
+                   k\tlog10\t.01\t100\t1\t1\n",
+        ),
+        ("o.tsv", "observableId\tobservableFormula\tnoiseFormula\ny\tA + q\t0.1\n"),
+        ("c.tsv", conditions),
+        ("m.tsv", measurements),
+    ])
+}
+
+/// A value of a condition counts in it alone, also where the model computes the initial value from
+/// variables; what a rule determines cannot be set.
+#[test]
+fn conditions_set_what_initial_assignments_compute() {
+    let math = |text: &str| {
+        format!(
+            "<math xmlns=\"http://www.w3.org/1998/Math/MathML\"><apply><times/>{text}</apply></math>"
+        )
+    };
+    let model = format!(
+        "<sbml xmlns=\"http://www.sbml.org/sbml/level3/version1/core\" level=\"3\" version=\"1\">\
+         <model id=\"m\"><listOfParameters><parameter id=\"k\" value=\"1\" constant=\"true\"/>\
+         <parameter id=\"q\" constant=\"true\"/><parameter id=\"A\" value=\"1\" constant=\"false\"/>\
+         </listOfParameters><listOfInitialAssignments><initialAssignment symbol=\"q\">{}\
+         </initialAssignment></listOfInitialAssignments><listOfRules><rateRule variable=\"A\">{}\
+         </rateRule></listOfRules></model></sbml>",
+        math("<cn>7</cn><ci>A</ci>"),
+        math("<cn>-1</cn><ci>k</ci><ci>A</ci>")
+    );
+    let rows = [0.0_f64, 1.0, 2.0].map(|t| {
+        let own = (-0.5 * t).exp();
+        format!("y\tc1\t{t}\t{}\ny\tc2\t{t}\t{}\n", own + 1.5, own + 7.0)
+    });
+    let measurements =
+        "observableId\tsimulationConditionId\ttime\tmeasurement\n".to_owned() + &rows.concat();
+    let here = small(&model, "conditionId\tq\nc1\t1.5\nc2\t\n", &measurements);
+    let (code, out, errors) = gapi(&here, &["identify", "p.yaml", "--out", "fit"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("fit/result.json")).unwrap();
+    let result: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let k = result["parameters"][0]["value"].as_f64().unwrap();
+    assert!((k - 0.5).abs() < 1e-6, "{k}");
+    let ruled = model.replace("initialAssignment symbol", "assignmentRule variable");
+    let ruled = ruled.replace("initialAssignment>", "assignmentRule>");
+    let ruled = ruled.replace("</listOfInitialAssignments><listOfRules>", "");
+    let ruled = ruled.replace("listOfInitialAssignments", "listOfRules");
+    fs::write(here.path().join("m.xml"), ruled).unwrap();
+    let (code, _, errors) = gapi(&here, &["import", "p.yaml", "--out", "p"]);
+    let said = "a rule of the model determines `q` at all times";
+    assert!(code == 1 && errors.contains(said) && errors.contains("c.tsv:2"), "{errors}");
+}
+
+/// Columns that another version has, and known ones in other letters, would be read over.
+#[test]
+fn columns_that_would_not_count_are_refused() {
+    let here = problem();
+    let table = PARAMETERS.replacen("\testimate\n", "\testimate\tpriorDistribution\n", 1);
+    let table = table.replacen("\t9\t1\t1\n", "\t9\t1\t1\tnormal\n", 1);
+    for (text, said) in [
+        (table, "version 1 of PEtab has no column `priorDistribution`"),
+        (
+            PARAMETERS.replacen("\testimate\n", "\testimate\tobjectivePriortype\n", 1),
+            "write `objectivePriorType`",
+        ),
+    ] {
+        fs::write(here.path().join("p.tsv"), text).unwrap();
+        let (code, _, errors) = gapi(&here, &["import", "p.yaml", "--out", "p"]);
+        assert!(code == 1 && errors.contains(said) && errors.contains("p.tsv"), "{errors}");
+    }
+}
+
+/// Noise that depends on the observable is part of the likelihood, also of a model in Modelica.
+#[test]
+fn a_model_in_modelica_is_extended_by_its_noise() {
+    let here = folder(&[
+        (
+            "M.mo",
+            "model M\n  parameter Real k = 1;\n  Real A(start = 2, fixed = true);\nequation\n  \
+             der(A) = -k*A;\nend M;\n",
+        ),
+        (
+            "p.yaml",
+            "format_version: 2.0.0\nmodel_files:\n  M:\n    location: M.mo\n    \
+                    language: modelica\nparameter_files: [p.tsv]\nobservable_files: [o.tsv]\n\
+                    measurement_files: [m.tsv]\n",
+        ),
+        (
+            "p.tsv",
+            "parameterId\tlowerBound\tupperBound\tnominalValue\testimate\nk\t.1\t10\t1\tTrue\n\
+                   s\t0\t1\t.1\tFalse\n",
+        ),
+        ("o.tsv", "observableId\tobservableFormula\tnoiseFormula\ny\t3*A\t0.1 + s*A\n"),
+        (
+            "m.tsv",
+            "observableId\ttime\tmeasurement\texperimentId\ny\t0\t5.5\t\ny\t1\t4.1\t\ny\t2\t2\t\n",
+        ),
+    ]);
+    let (code, out, errors) = gapi(&here, &["identify", "p.yaml", "--out", "fit"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("fit/result.json")).unwrap();
+    let result: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let k = result["parameters"][0]["value"].as_f64().unwrap();
+    let negative = |k: f64| -> f64 {
+        let points = [(0.0, 5.5), (1.0, 4.1), (2.0, 2.0)];
+        let one = |(t, y): (f64, f64)| {
+            let a = 2.0 * (-k * t).exp();
+            let sigma = 0.1 + 0.1 * a;
+            0.5 * ((y - 3.0 * a) / sigma).powi(2) + (sigma * std::f64::consts::TAU.sqrt()).ln()
+        };
+        points.into_iter().map(one).sum()
+    };
+    let own = result["negative_log_likelihood"].as_f64().unwrap();
+    assert!((own - negative(k)).abs() < 1e-6, "{own} {}", negative(k));
+    assert!(negative(k) < negative(1.003 * k).min(negative(0.997 * k)), "{k} is no minimum");
+}
+
 /// The problem in version 2 has the fit that it has in version 1.
 #[test]
 fn version_2_has_the_same_fit() {

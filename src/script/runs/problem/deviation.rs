@@ -1,11 +1,11 @@
 //! Standard deviations that are formulas of variables and parameters, such as `a + b*abs(y)`: they
 //! become variables of the class around the model. Parameters of the problem that the model does not
-//! have are declared there.
+//! have are declared there; so are those that only expressions in `set` and `start` contain.
 
 use super::enclosing_class::{
-    EnclosingClass, References, deviation_of, expression, literal, own_name, reference,
+    EnclosingClass, QuotedNames, References, deviation_of, expression, literal, own_name, reference,
 };
-use super::file::{ExperimentEntry, ProblemFile, Role, SigmaEntry};
+use super::file::{ExperimentEntry, ProblemFile, Role, SigmaEntry, ValueEntry};
 use super::sigma;
 use crate::diag::{At as _, Diagnostic, suggest};
 use crate::fault;
@@ -25,9 +25,9 @@ pub(super) struct Formula {
     place: Span,
 }
 
-/// What the class around the model calls a parameter that only deviations have.
+/// What the class around the model calls a parameter that the model does not have.
 pub(super) fn parameter(name: &str) -> String {
-    own_name("parameter of deviations", name)
+    own_name("parameter of the problem", name)
 }
 
 /// The formulas of an experiment that contain more than their output.
@@ -69,9 +69,10 @@ pub(super) fn formulas(
     Ok(found)
 }
 
-/// The parameters of the problem that formulas of any of its experiments contain.
+/// The parameters of the problem that formulas and values of any of its experiments contain.
 pub(super) fn parameters_of(file: &ProblemFile) -> Vec<String> {
     let mut names = References(Vec::new());
+    file.experiment.iter().for_each(|entry| names.0.extend(names_in_values(entry, file)));
     let outputs = file.experiment.iter().flat_map(|entry| entry.all_outputs());
     for (y_name, column) in outputs {
         let Some(SigmaEntry::Words(text)) = &column.sigma else { continue };
@@ -84,6 +85,28 @@ pub(super) fn parameters_of(file: &ProblemFile) -> Vec<String> {
     names.0.retain(|name| file.parameters.contains_key(name));
     add_tied(&mut names.0, file, |_| true);
     names.0
+}
+
+/// The parameters of the problem in the values of `set` and `start`.
+fn names_in_values(entry: &ExperimentEntry, file: &ProblemFile) -> Vec<String> {
+    let values = entry.set.values.values().chain(entry.start.values());
+    let mut names = References(Vec::new());
+    values
+        .filter_map(|own| value_expression(own, file))
+        .for_each(|mut own| names.expression(&mut own));
+    names.0
+}
+
+/// What a string of names that `[parameters]` lists is: an expression of these parameters; another one is a
+/// String or a literal.
+pub(super) fn value_expression(value: &ValueEntry, file: &ProblemFile) -> Option<Expression> {
+    let ValueEntry::Text(text) = value else { return None };
+    let mut read = expression(text, None).ok()?;
+    QuotedNames.expression(&mut read);
+    let mut names = References(Vec::new());
+    names.expression(&mut read);
+    let is_listed = |own: &String| file.parameters.contains_key(own);
+    (!names.0.is_empty() && names.0.iter().all(is_listed)).then_some(read)
 }
 
 /// Adds the parameters of the problem that those among these depend on that are tied.
@@ -117,7 +140,7 @@ impl Rewrite for OwnOutput<'_> {
 }
 
 /// Parameters get the names that they have in the class.
-struct Renamed<'a>(&'a [String]);
+pub(super) struct Renamed<'a>(pub(super) &'a [String]);
 
 impl Rewrite for Renamed<'_> {
     fn expression(&mut self, e: &mut Expression) {
@@ -129,20 +152,21 @@ impl Rewrite for Renamed<'_> {
     }
 }
 
-/// Declares the deviations in the class around the model, and parameters that only they have; returns
-/// the names of these. `types`: the model, which is needed where there are formulas.
+/// Declares the deviations in the class around the model; returns the names of the parameters that only
+/// they and values of the experiment have. `types`: the model, which is needed where there are such.
 ///
 /// # Errors
 ///
 /// Names that neither the model nor the problem has.
 pub(super) fn declare(
     formulas: Vec<Formula>,
-    file: &ProblemFile,
+    (file, entry): (&ProblemFile, &ExperimentEntry),
     types: Option<&FlatModel>,
     enclosing: &mut EnclosingClass,
 ) -> Result<Vec<String>, Diagnostic> {
-    let Some(flat) = types.filter(|_| !formulas.is_empty()) else { return Ok(Vec::new()) };
-    let mut own: Vec<String> = Vec::new();
+    let Some(flat) = types else { return Ok(Vec::new()) };
+    let mut own: Vec<String> = names_in_values(entry, file);
+    own.retain(|name| !is_of_model(name, flat));
     for formula in &formulas {
         let mut names = References(Vec::new());
         names.expression(&mut formula.tree.clone());
@@ -199,7 +223,7 @@ fn unknown(name: &str, formula: &Formula, (file, flat): (&ProblemFile, &FlatMode
     fault.help(help).at(formula.place)
 }
 
-/// Declares a parameter that only deviations have in the class around the model; its name there.
+/// Declares a parameter that the model does not have in the class around it; its name there.
 ///
 /// # Errors
 ///
@@ -222,6 +246,6 @@ pub(super) fn declare_parameter(
     };
     let own = parameter(name);
     _ = writeln!(enclosing.declarations, "  parameter Real {own} = {value};");
-    enclosing.elements.push((own.clone(), format!("the parameter {name} of deviations")));
+    enclosing.elements.push((own.clone(), format!("the parameter {name} of the problem")));
     Ok(own)
 }

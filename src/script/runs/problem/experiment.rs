@@ -376,7 +376,7 @@ impl Source<'_> {
         let has_formulas = !formulas.is_empty() || !of_any_deviation.is_empty();
         let plain = types_of(session, &file.model, (has_formulas, setting.needs_types()))?;
         let types = plain.as_ref().map(|own| &own.model);
-        let of_deviations = deviation::declare(formulas, file, types, &mut enclosing)
+        let of_deviations = deviation::declare(formulas, (file, entry), types, &mut enclosing)
             .map_err(|error| vec![error])?;
         let setting = parameters::Setting { of_deviations: &of_deviations, ..setting };
         let parameters = setting.parameters(types, &mut enclosing).map_err(|error| vec![error])?;

@@ -2,7 +2,8 @@
 //! the free ones, which the search sets before each simulation.
 
 use super::data::Notes;
-use super::enclosing_class::{self, EnclosingClass, QuotedNames, References, own_name};
+use super::deviation::Renamed;
+use super::enclosing_class::{self, EnclosingClass, QuotedNames, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
 use super::flat::{attribute, variable_of};
 use super::segments::Segment;
@@ -33,9 +34,9 @@ pub(super) struct Setting<'a> {
     /// The part of the experiment.
     pub segment: &'a Segment,
     pub free: &'a [Free],
-    /// Parameters that only formulas for deviations of this experiment have.
+    /// Parameters that only formulas for deviations and values of this experiment have.
     pub of_deviations: &'a [String],
-    /// Parameters that formulas for deviations of any experiment have.
+    /// Parameters that formulas for deviations and values of any experiment have.
     pub of_any_deviation: &'a [String],
 }
 
@@ -52,7 +53,8 @@ impl Setting<'_> {
     /// Whether a value is a String: what it means depends on the type of the variable.
     pub(super) fn needs_types(&self) -> bool {
         let is_string = |value: &ValueEntry| {
-            matches!(value, ValueEntry::Text(_)) && self.expression_of(value).is_none()
+            matches!(value, ValueEntry::Text(_))
+                && deviation::value_expression(value, self.file).is_none()
         };
         let fixed = self.file.parameters.values().filter_map(|own| own.fixed.as_ref());
         let values = self.entry.set.values.values().chain(self.entry.start.values());
@@ -223,22 +225,13 @@ impl Setting<'_> {
         (name, place): (&str, Span),
         types: Types<'_>,
     ) -> Result<Expression, Diagnostic> {
-        match self.expression_of(value) {
-            Some(read) => Ok(read),
+        match deviation::value_expression(value, self.file) {
+            Some(mut read) => {
+                Renamed(self.of_deviations).expression(&mut read);
+                Ok(read)
+            }
             None => enclosing_class::value(value, (name, place), declared(types, name)).at(place),
         }
-    }
-
-    /// What a string of names that `[parameters]` lists is: an expression of these parameters; another one is a
-    /// String or a literal.
-    fn expression_of(&self, value: &ValueEntry) -> Option<Expression> {
-        let ValueEntry::Text(text) = value else { return None };
-        let mut read = enclosing_class::expression(text, None).ok()?;
-        QuotedNames.expression(&mut read);
-        let mut names = References(Vec::new());
-        names.expression(&mut read);
-        let is_listed = |own: &String| self.file.parameters.contains_key(own);
-        (!names.0.is_empty() && names.0.iter().all(is_listed)).then_some(read)
     }
 }
 
@@ -302,6 +295,14 @@ pub(super) fn check_taken(
     let set =
         entry.set.values.iter().map(|(name, value)| (name, value, entry.places.at(&["set", name])));
     for (name, value, place) in fixed.chain(set) {
+        if model.program.is_solved_at_start(name) {
+            let fault = fault!(
+                BAD_OPTION,
+                "`{name}` cannot be set: initial equations of the model determine it (`fixed = false`)";
+                help: "remove the initial equation for it"
+            );
+            return Err(fault.at(place));
+        }
         let requested = match value {
             ValueEntry::Number(number) => *number,
             ValueEntry::Truth(truth) => f64::from(*truth),

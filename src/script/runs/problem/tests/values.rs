@@ -57,6 +57,16 @@ model Sized
   parameter Real k = 1;
   output Real y = own.a*free.a*(1 - exp(-k*time));
 end Sized;
+model Rest
+  parameter Real k = 1;
+  parameter Real q(fixed = false);
+  Real x(start = 1, fixed = true);
+  output Real y = x + q;
+initial equation
+  q = 7*x;
+equation
+  der(x) = -k*x;
+end Rest;
 model Early
   parameter Real a = 1;
   output Real y = 1/(a*time);
@@ -284,6 +294,30 @@ fn a_variable_that_equations_determine_is_not_set() {
     let refused = found(head, &format!("{experiment}set = {{ x = 1 }}"), &data);
     says(&refused, &["`x` is no parameter of `Cell`", "start = { x = ", "| 1"]);
     value(&found(head, &format!("{experiment}start = {{ x = 1 }}"), &data), "k", 0.5);
+}
+
+/// A parameter that only `set` uses need not be one of the model; one that initial equations determine keeps
+/// their value.
+#[test]
+fn parameters_of_the_problem_alone_are_values_of_experiments() {
+    let data = table("time,y", |t| (-0.5 * t).exp().to_string());
+    let head = "model = \"Cell\"\n[parameters]\nhalf = { min = 0.1, max = 10 }\n\
+                other = { min = 0.1, max = 10 }\n";
+    let outputs = "outputs = { x = \"y\" }\n";
+    let both = format!(
+        "{outputs}set = {{ k = \"2*half\" }}\n[[experiment]]\ndata = \"d.csv\"\n{outputs}\
+         start = {{ x = \"2*other\" }}\nset = {{ k = \"half + 0.25*other^0\" }}\n"
+    );
+    let found = found(head, &both, &data);
+    value(&found, "half", 0.25);
+    value(&found, "other", 0.5);
+    let data = table("time,y", |_| "1".to_owned());
+    let kept = self::found(
+        "model = \"Rest\"\n[parameters]\nk = { min = 0.1, max = 10 }\nq = { fixed = 1.5 }\n",
+        "outputs = { y = \"y\" }\n",
+        &data,
+    );
+    says(&kept, &["`q` cannot be set", "initial equations", "{ fixed = 1.5 }"]);
 }
 
 /// y of the valve with K = 2, T = 1.5, open from 1 to 3.
