@@ -163,8 +163,24 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         ([Some(min), Some(max)], true) => [a.max(min), b.min(max)],
         _ => [a, b],
     };
-    let [low, high] = [a, b].map(number);
-    let text = match (kind, is_on_scale) {
+    let written = written((kind, is_on_scale), [a, b], (&within, base));
+    let text = written.ok_or_else(|| {
+        let fault = Fault::new(BAD_OPTION, format!("the prior `{kind}` is not supported"));
+        row.refusal(fault.help(
+            "supported are uniform, normal, log-normal and Laplace ones, also parameterScale…",
+        ))
+    })?;
+    Ok((Some(text), is_uniform.then_some([a, b])))
+}
+
+/// A prior as a problem file has it; `None` of kinds that are not supported.
+fn written(
+    (kind, is_on_scale): (&str, bool),
+    numbers: [f64; 2],
+    (within, base): (&str, &str),
+) -> Option<String> {
+    let [low, high] = numbers.map(number);
+    Some(match (kind, is_on_scale) {
         ("uniform" | "parameterScaleUniform", false) => {
             format!("{{ distribution = \"uniform\", min = {low}, max = {high} }}")
         }
@@ -186,13 +202,8 @@ fn prior(row: &Row, scale: &str) -> Result<(Option<String>, Option<[f64; 2]>), R
         ("parameterScaleLaplace", true) => {
             format!("{{ distribution = \"laplace\", median = {low}, factor = {high}{base} }}")
         }
-        _ => {
-            let fault = Fault::new(BAD_OPTION, format!("the prior `{kind}` is not supported"))
-                .help("supported are uniform, normal, log-normal and Laplace ones, also parameterScale…");
-            return Err(row.refusal(fault));
-        }
-    };
-    Ok((Some(text), is_uniform.then_some([a, b])))
+        _ => return None,
+    })
 }
 
 pub(super) fn observable(row: &Row) -> Result<Observable, Refusal> {
