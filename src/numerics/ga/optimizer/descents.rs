@@ -28,9 +28,9 @@ const BAD: f64 = 0.1;
 /// descents, two need 5, three 7, four 9, ten 20.
 pub const FEWEST: usize = 5;
 const UNSEEN: f64 = 0.3;
-/// Where the best of so many descents has ended at no minimum, and the last ones have not improved on
-/// it by this part, further ones will not come to one either: derivatives vanish or jump there, or a
-/// constraint is in the way.
+/// Where the best of so many descents has ended at no minimum, and the last ones, half of all but so many
+/// at least, have not improved on it by this part, further ones will not come to one either: derivatives
+/// vanish or jump there, or a constraint is in the way.
 const STUCK: usize = 30;
 const LAST: usize = 15;
 const IMPROVED: f64 = 1e-3;
@@ -271,7 +271,8 @@ impl Pool {
     fn is_stuck(&self) -> bool {
         let Some(best) = self.best().map(|best| &self.descents[best]) else { return false };
         let count = self.descents.len();
-        let before = self.rounds.iter().rfind(|(begun, _)| begun + LAST <= count);
+        let last = LAST.max(count / 2);
+        let before = self.rounds.iter().rfind(|(begun, _)| begun + last <= count);
         let is_better = |sum: f64| best.sum() < (1.0 - IMPROVED) * sum;
         let has_ended = best.has_ended() && best.report().ending != DescentEnd::Minimum;
         has_ended && count >= STUCK && before.is_some_and(|(_, sum)| !is_better(*sum))
