@@ -83,7 +83,8 @@ impl Whitening {
         }
     }
 
-    pub(super) fn add(&mut self, scales: &JointScales) {
+    /// Adds the points of another group.
+    pub(crate) fn add(&mut self, scales: &JointScales) {
         self.blocks.extend(scales.blocks.iter().cloned());
     }
 }
@@ -92,6 +93,13 @@ impl JointGroup {
     /// Points of all instants.
     pub fn count(&self) -> f64 {
         self.rows.iter().map(Vec::len).sum::<usize>() as f64
+    }
+
+    /// The same where its points are places in this list.
+    pub fn within(&self, points: &[usize]) -> JointGroup {
+        let place = |(member, p): &(usize, usize)| Some((*member, points.binary_search(p).ok()?));
+        let row = |row: &Vec<(usize, usize)>| row.iter().filter_map(place).collect();
+        JointGroup { rows: self.rows.iter().map(row).collect(), ..self.clone() }
     }
 
     /// Covariance and what follows from it; `residuals`: those of all points, times their weights.

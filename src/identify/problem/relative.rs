@@ -17,17 +17,20 @@
 //! References: [Golub & Pereyra 1973](gapilib_base::bibliography#golub-pereyra-1973),
 //! [Kaufman 1975](gapilib_base::bibliography#kaufman-1975).
 
-use super::Problem;
+use super::{Problem, joint};
 use crate::elementary;
+use crate::fitness::{JointGroup, Whitening};
 use serde::{Deserialize, Serialize};
 
+/// Growth of a scale that follows less than this part of what is left follows rounding.
+const ROUNDING: f64 = 1e-14;
 /// A column of which less than this part is independent of the others says nothing of its own.
 const DEPENDENT: f64 = 1e-10;
 /// What is left of a column below this part of its length is rounding.
 const MADE_UP: f64 = 1e-11;
 /// Standard deviations that change by less are those of the fit, and so often they are found at most:
 /// each round leaves about 1/n of the distance.
-const CONSTANT: f64 = 1e-14;
+const CONSTANT: f64 = 1e-13;
 const ROUNDS: usize = 200;
 
 /// An estimated scale of a series.
@@ -100,8 +103,20 @@ pub(crate) struct Coefficient {
 struct Block {
     points: Vec<usize>,
     coefficients: Vec<usize>,
+    /// Groups of outputs with correlated errors; their points are places in those of the block.
+    joints: Vec<JointGroup>,
     /// Whether their weights depend on what is left.
     is_mixed: bool,
+}
+
+/// What the series of a point has.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    own: Own,
+    /// The estimated standard deviation.
+    deviation: Option<usize>,
+    /// The group of outputs with correlated errors.
+    joint: Option<usize>,
 }
 
 /// The series of a problem that are measured in arbitrary units.
@@ -109,8 +124,7 @@ pub(crate) struct Relative {
     coefficients: Vec<Coefficient>,
     blocks: Vec<Block>,
     series: Vec<Own>,
-    /// For each point, what its series has, and the estimated standard deviation.
-    points: Vec<(Own, Option<usize>)>,
+    points: Vec<Point>,
     /// Points of each estimated standard deviation.
     counts: Vec<f64>,
 }
@@ -132,8 +146,9 @@ pub(crate) struct Scaled {
     pub values: Vec<f64>,
     /// Which of them took part.
     pub is_active: Vec<bool>,
-    /// What the points counted.
+    /// What the points counted, and what made those of each block uncorrelated.
     weights: Vec<f64>,
+    whitenings: Vec<Whitening>,
 }
 
 impl Relative {
@@ -152,6 +167,7 @@ impl Relative {
                 coefficients.len() - 1
             })
         };
+        let groups = joint::groups(&problem.series);
         let mut deviations: Vec<&str> = Vec::new();
         let (mut all, mut counts) = (Vec::new(), Vec::new());
         for (number, series) in problem.series.iter().enumerate() {
@@ -164,7 +180,9 @@ impl Relative {
             let offset = series.scaling.offset.as_ref().map(|name| {
                 place(Coefficient { name: name.clone(), kind: Kind::Offset, is_positive: false })
             });
-            let deviation = series.deviation().map(|name| {
+            let joint = series.joint.as_ref();
+            let joint = joint.and_then(|own| groups.iter().position(|one| one.0 == own.group));
+            let deviation = series.deviation().filter(|_| joint.is_none()).map(|name| {
                 deviations.iter().position(|own| *own == name).unwrap_or_else(|| {
                     deviations.push(name);
                     counts.push(0.0);
@@ -174,13 +192,17 @@ impl Relative {
             if let Some(deviation) = deviation {
                 counts[deviation] += series.x.len() as f64;
             }
-            all.push((Own { scale, offset, is_logarithmic }, deviation));
+            all.push(Point { own: Own { scale, offset, is_logarithmic }, deviation, joint });
         }
         let sizes = problem.series.iter().map(|series| series.x.len());
-        let points: Vec<(Own, Option<usize>)> =
+        let points: Vec<Point> =
             all.iter().zip(sizes).flat_map(|(own, n)| std::iter::repeat_n(*own, n)).collect();
-        let blocks = blocks(&points, coefficients.len());
-        let series = all.into_iter().map(|own| own.0).collect();
+        let groups = groups.iter();
+        let joints: Vec<JointGroup> = groups
+            .map(|(_, members)| joint::group(&problem.series, members, problem.noise))
+            .collect();
+        let blocks = blocks((&points, &joints), coefficients.len());
+        let series = all.into_iter().map(|own| own.own).collect();
         Some(Relative { coefficients, blocks, series, points, counts })
     }
 
@@ -196,7 +218,7 @@ impl Relative {
 
     /// What a coefficient is multiplied with at a point.
     fn entry(&self, coefficient: usize, point: usize, row: &[f64]) -> f64 {
-        let own = &self.points[point].0;
+        let own = &self.points[point].own;
         match own.scale == Some(coefficient) && !own.is_logarithmic {
             true => row[point],
             false if [own.scale, own.offset].contains(&Some(coefficient)) => 1.0,
@@ -206,115 +228,67 @@ impl Relative {
 
     /// What a point has without coefficients.
     fn rest(&self, point: usize, row: &[f64]) -> f64 {
-        let own = &self.points[point].0;
+        let own = &self.points[point].own;
         if own.scale.is_some() && !own.is_logarithmic { 0.0 } else { row[point] }
     }
 
-    /// Columns of some coefficients of a block, as they count.
-    fn basis(&self, block: &Block, which: &[usize], row: &[f64], weights: &[f64]) -> Basis {
+    /// The columns of some coefficients of a block, as they count.
+    fn counted(
+        &self,
+        block: &Block,
+        which: &[usize],
+        row: &[f64],
+        (weights, whitening): (&[f64], &Whitening),
+    ) -> Vec<Vec<f64>> {
         let column = |coefficient: &usize| -> Vec<f64> {
             let entry = |point: &usize| weights[*point] * self.entry(*coefficient, *point, row);
-            block.points.iter().map(entry).collect()
+            let mut column: Vec<f64> = block.points.iter().map(entry).collect();
+            whitening.apply(&mut column);
+            column
         };
-        Basis::of(which.iter().map(column).collect())
+        which.iter().map(column).collect()
     }
 
     /// The best coefficients of a block with these weights.
-    fn solve(&self, block: &Block, row: &[f64], measured: &[f64], weights: &[f64]) -> Vec<f64> {
-        let right: Vec<f64> = block
-            .points
-            .iter()
-            .map(|p| weights[*p] * (measured[*p] - self.rest(*p, row)))
-            .collect();
-        let of = |which: &[usize]| self.basis(block, which, row, weights).solve(&right);
-        let places = |keep: &dyn Fn(usize) -> bool| -> Vec<usize> {
-            (0..block.coefficients.len()).filter(|k| keep(*k)).collect()
-        };
-        let named = |places: &[usize]| -> Vec<usize> {
-            places.iter().map(|k| block.coefficients[*k]).collect()
-        };
-        let bounded = |k: usize| self.coefficients[block.coefficients[k]].is_positive;
-        let mut found = of(&block.coefficients);
-        if (0..found.len()).all(|k| !bounded(k) || found[k] > 0.0) {
-            return found;
-        }
-        // Non-negative least squares: scales enter one by one, the one first whose growth helps most.
-        let mut inside = places(&|k| !bounded(k));
-        found = vec![0.0; block.coefficients.len()];
-        let fill = |found: &mut Vec<f64>, inside: &[usize]| {
-            let own = of(&named(inside));
-            found.fill(0.0);
-            inside.iter().zip(own).for_each(|(k, value)| found[*k] = value);
-        };
-        fill(&mut found, &inside);
-        for _ in 0..3 * block.coefficients.len() {
-            let residual = self.residual(block, &found, (row, weights), &right);
-            let pull = |k: usize| -> f64 {
-                let c = block.coefficients[k];
-                let parts = block.points.iter().zip(&residual);
-                let own = |p: &usize| weights[*p] * self.entry(c, *p, row);
-                let size: f64 = block.points.iter().map(|p| own(p) * own(p)).sum();
-                let along: f64 = parts.map(|(p, r)| own(p) * r).sum();
-                if size > 0.0 { along / size.sqrt() } else { 0.0 }
-            };
-            let least = CONSTANT * residual.iter().map(|r| r * r).sum::<f64>().sqrt();
-            let outside = places(&|k| !inside.contains(&k));
-            let next = outside.into_iter().map(|k| (k, pull(k))).filter(|own| own.1 > least);
-            let Some((next, _)) = next.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-            inside.push(next);
-            fill(&mut found, &inside);
-            while let Some(at) = inside.iter().position(|k| bounded(*k) && found[*k] <= 0.0) {
-                inside.remove(at);
-                fill(&mut found, &inside);
-            }
-        }
-        found
-    }
-
-    /// What coefficients leave of the right side.
-    fn residual(
+    fn solve(
         &self,
         block: &Block,
-        values: &[f64],
-        (row, weights): (&[f64], &[f64]),
-        right: &[f64],
+        row: &[f64],
+        measured: &[f64],
+        (weights, whitening): (&[f64], &Whitening),
     ) -> Vec<f64> {
-        let one = |(p, b): (&usize, &f64)| {
-            let parts = block.coefficients.iter().zip(values);
-            b - weights[*p] * parts.map(|(c, v)| v * self.entry(*c, *p, row)).sum::<f64>()
-        };
-        block.points.iter().zip(right).map(one).collect()
+        let columns = self.counted(block, &block.coefficients, row, (weights, whitening));
+        let right = |p: &usize| weights[*p] * (measured[*p] - self.rest(*p, row));
+        let mut right: Vec<f64> = block.points.iter().map(right).collect();
+        whitening.apply(&mut right);
+        let is_positive = |c: &usize| self.coefficients[*c].is_positive;
+        let bounded: Vec<bool> = block.coefficients.iter().map(is_positive).collect();
+        least_squares(&columns, &right, &bounded)
     }
 
     /// The coefficients that fit a simulation best.
     pub fn fit(&self, row: &[f64], compared: Compared<'_>) -> Scaled {
         let Compared { measured, weights, are_final } = compared;
         let n = self.coefficients.len();
-        let mut found =
-            Scaled { values: vec![0.0; n], is_active: vec![false; n], weights: weights.to_vec() };
+        let mut found = Scaled {
+            values: vec![0.0; n],
+            is_active: vec![false; n],
+            weights: weights.to_vec(),
+            whitenings: Vec::new(),
+        };
         for block in &self.blocks {
-            let mut solved;
-            if are_final || !block.is_mixed {
-                solved = self.solve(block, row, measured, weights);
-            } else {
-                solved = Vec::new();
-                self.set_weights(block, measured, weights, &mut found.weights);
-                for _ in 0..ROUNDS {
-                    solved = self.solve(block, row, measured, &found.weights);
-                    let left = |p: &usize| {
-                        let parts = block.coefficients.iter().zip(&solved);
-                        let own = parts.map(|(c, v)| v * self.entry(*c, *p, row));
-                        measured[*p] - self.rest(*p, row) - own.sum::<f64>()
-                    };
-                    let left: Vec<f64> = block.points.iter().map(left).collect();
-                    let mut all = vec![0.0; row.len()];
-                    block.points.iter().zip(left).for_each(|(p, r)| all[*p] = r);
-                    if self.set_weights(block, &all, weights, &mut found.weights) < CONSTANT {
-                        break;
-                    }
+            let (solved, whitening) = match are_final || !block.is_mixed {
+                true => {
+                    let mut whitening = Whitening::default();
+                    let nothing = vec![0.0; block.points.len()];
+                    block.joints.iter().for_each(|own| whitening.add(&own.scales(&nothing)));
+                    (self.solve(block, row, measured, (weights, &whitening)), whitening)
                 }
-            }
-            let basis = self.basis(block, &block.coefficients, row, &found.weights);
+                false => self.fit_in_turn(block, row, compared, &mut found.weights),
+            };
+            let counted = (&found.weights[..], &whitening);
+            let basis = Basis::of(self.counted(block, &block.coefficients, row, counted));
+            found.whitenings.push(whitening);
             for ((c, value), is_independent) in
                 block.coefficients.iter().zip(solved).zip(basis.is_independent)
             {
@@ -326,29 +300,80 @@ impl Relative {
         found
     }
 
-    /// Weights with the standard deviations that these differences have; how much they have changed.
-    fn set_weights(&self, block: &Block, left: &[f64], known: &[f64], weights: &mut [f64]) -> f64 {
+    /// The coefficients of a block and the standard deviations of what they leave, in turn.
+    fn fit_in_turn(
+        &self,
+        block: &Block,
+        row: &[f64],
+        Compared { measured, weights: known, .. }: Compared<'_>,
+        weights: &mut [f64],
+    ) -> (Vec<f64>, Whitening) {
+        let at_first: Vec<f64> = block.points.iter().map(|p| measured[*p]).collect();
+        self.set_weights(block, &at_first, known, weights);
+        let (mut solved, mut whitening) = (Vec::new(), Whitening::default());
+        for _ in 0..ROUNDS {
+            let next = self.solve(block, row, measured, (weights, &whitening));
+            let moved = next.iter().zip(&solved).map(|(a, b): (&f64, &f64)| (a - b).abs());
+            let moved = moved.fold(if solved.is_empty() { f64::NAN } else { 0.0 }, f64::max);
+            let size = next.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+            solved = next;
+            let left = |p: &usize| {
+                let parts = block.coefficients.iter().zip(&solved);
+                let own = parts.map(|(c, v)| v * self.entry(*c, *p, row));
+                measured[*p] - self.rest(*p, row) - own.sum::<f64>()
+            };
+            let left: Vec<f64> = block.points.iter().map(left).collect();
+            let (change, correlations) = self.set_weights(block, &left, known, weights);
+            whitening = correlations;
+            if change < CONSTANT && moved <= CONSTANT * size {
+                break;
+            }
+        }
+        (solved, whitening)
+    }
+
+    /// Weights with the standard deviations that these differences of the points of a block have, and
+    /// their correlations; how much the weights have changed.
+    fn set_weights(
+        &self,
+        block: &Block,
+        left: &[f64],
+        known: &[f64],
+        weights: &mut [f64],
+    ) -> (f64, Whitening) {
         let mut squares = vec![0.0; self.counts.len()];
-        for p in &block.points {
-            if let Some(own) = self.points[*p].1 {
-                squares[own] += elementary::powi(known[*p] * left[*p], 2);
+        let residuals = block.points.iter().zip(left).map(|(p, left)| known[*p] * left);
+        let residuals: Vec<f64> = residuals.collect();
+        for (p, residual) in block.points.iter().zip(&residuals) {
+            if let Some(own) = self.points[*p].deviation {
+                squares[own] += residual * residual;
             }
         }
         let mut change = 0.0f64;
+        let mut set = |p: usize, sigma: f64| {
+            let next = known[p] / sigma.max(f64::MIN_POSITIVE);
+            change = change.max((next / weights[p] - 1.0).abs());
+            weights[p] = next;
+        };
         for p in &block.points {
-            let Some(own) = self.points[*p].1 else { continue };
-            let sigma = (squares[own] / self.counts[own]).sqrt().max(f64::MIN_POSITIVE);
-            let next = known[*p] / sigma;
-            change = change.max((next / weights[*p] - 1.0).abs());
-            weights[*p] = next;
+            let Some(own) = self.points[*p].deviation else { continue };
+            set(*p, (squares[own] / self.counts[own]).sqrt());
         }
-        change
+        let mut whitening = Whitening::default();
+        for joint in &block.joints {
+            let scales = joint.scales(&residuals);
+            whitening.add(&scales);
+            for (member, at) in joint.rows.iter().flatten().filter(|_| joint.given.is_none()) {
+                set(block.points[*at], scales.covariance[(*member, *member)].sqrt());
+            }
+        }
+        (change, whitening)
     }
 
     /// Scales a row of simulated points.
     pub fn apply(&self, found: &Scaled, row: &mut [f64]) {
         let scaled = |point: usize| {
-            let own = &self.points[point].0;
+            let own = &self.points[point].own;
             let parts = [own.scale, own.offset].into_iter().flatten();
             let sum: f64 = parts.map(|c| found.values[c] * self.entry(c, point, row)).sum();
             self.rest(point, row) + sum
@@ -360,7 +385,9 @@ impl Relative {
     /// Derivatives of the scaled points with scales and offsets as they are.
     pub fn scale_derivatives(&self, found: &Scaled, derivatives: &mut [f64]) {
         let n = derivatives.len() / self.points.len();
-        for ((own, _), row) in self.points.iter().zip(derivatives.chunks_exact_mut(n.max(1))) {
+        for (Point { own, .. }, row) in
+            self.points.iter().zip(derivatives.chunks_exact_mut(n.max(1)))
+        {
             if let Some(scale) = own.scale.filter(|_| !own.is_logarithmic) {
                 row.iter_mut().for_each(|d| *d *= found.values[scale]);
             }
@@ -379,13 +406,15 @@ impl Relative {
             (0..n).map(|k| square(k).sqrt()).collect()
         };
         let before = lengths(derivatives);
-        for block in &self.blocks {
+        for (block, whitening) in self.blocks.iter().zip(&found.whitenings) {
             let active: Vec<usize> =
                 block.coefficients.iter().copied().filter(|c| found.is_active[*c]).collect();
-            let basis = self.basis(block, &active, row, &found.weights);
+            let counted = (&found.weights[..], whitening);
+            let basis = Basis::of(self.counted(block, &active, row, counted));
             for k in 0..n {
                 let weighted = |p: &usize| found.weights[*p] * derivatives[p * n + k];
-                let column: Vec<f64> = block.points.iter().map(weighted).collect();
+                let mut column: Vec<f64> = block.points.iter().map(weighted).collect();
+                whitening.apply(&mut column);
                 let parts = basis.solve(&column);
                 for p in &block.points {
                     let own = active.iter().zip(&parts).map(|(c, v)| v * self.entry(*c, *p, row));
@@ -409,23 +438,67 @@ impl Relative {
     }
 }
 
-/// Points whose coefficients depend on each other: they share some, or a standard deviation.
-fn blocks(points: &[(Own, Option<usize>)], count: usize) -> Vec<Block> {
+/// The coefficients of columns that are nearest to `right`, some of which are not negative.
+fn least_squares(columns: &[Vec<f64>], right: &[f64], bounded: &[bool]) -> Vec<f64> {
+    let fitted = |which: &[usize]| {
+        let own = which.iter().map(|k| columns[*k].clone()).collect();
+        let values = Basis::of(own).solve(right);
+        let mut all = vec![0.0; columns.len()];
+        which.iter().zip(values).for_each(|(k, value)| all[*k] = value);
+        all
+    };
+    let is_allowed = |k: usize, value: f64| !bounded[k] || value > 0.0;
+    let all: Vec<usize> = (0..columns.len()).collect();
+    let mut found = fitted(&all);
+    if found.iter().enumerate().all(|(k, value)| is_allowed(k, *value)) {
+        return found;
+    }
+    // Scales enter one by one, the one first whose growth helps most.
+    let mut inside: Vec<usize> = all.iter().copied().filter(|k| !bounded[*k]).collect();
+    found = fitted(&inside);
+    for _ in 0..3 * columns.len() {
+        let left = |(j, b): (usize, &f64)| {
+            b - columns.iter().zip(&found).map(|(column, value)| value * column[j]).sum::<f64>()
+        };
+        let left: Vec<f64> = right.iter().enumerate().map(left).collect();
+        let pull = |k: usize| -> f64 {
+            let size = dot(&columns[k], &columns[k]).sqrt();
+            if size > 0.0 { dot(&columns[k], &left) / size } else { 0.0 }
+        };
+        let least = ROUNDING * dot(&left, &left).sqrt();
+        let outside = all.iter().filter(|k| !inside.contains(k));
+        let next = outside.map(|k| (*k, pull(*k))).filter(|own| own.1 > least);
+        let Some((next, _)) = next.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        inside.push(next);
+        found = fitted(&inside);
+        while let Some(at) = inside.iter().position(|k| !is_allowed(*k, found[*k])) {
+            inside.remove(at);
+            found = fitted(&inside);
+        }
+    }
+    found
+}
+
+/// Points whose coefficients depend on each other: they share some, a standard deviation or a
+/// covariance.
+fn blocks((points, joints): (&[Point], &[JointGroup]), count: usize) -> Vec<Block> {
     let mut names: Vec<usize> = (0..count).collect();
     let merge = |names: &mut Vec<usize>, a: usize, b: usize| {
         let (to, from) = (names[a], names[b]);
         names.iter_mut().filter(|own| **own == from).for_each(|own| *own = to);
     };
-    let mut by_deviation: Vec<(usize, usize)> = Vec::new();
-    for (own, deviation) in points {
-        let Some(first) = own.scale.or(own.offset) else { continue };
-        if let Some(offset) = own.offset {
+    let shared = |own: &Point| [(0, own.deviation), (1, own.joint)];
+    let mut known: Vec<((usize, Option<usize>), usize)> = Vec::new();
+    for point in points {
+        let Some(first) = point.own.scale.or(point.own.offset) else { continue };
+        if let Some(offset) = point.own.offset {
             merge(&mut names, first, offset);
         }
-        let Some(deviation) = deviation else { continue };
-        match by_deviation.iter().find(|known| known.0 == *deviation) {
-            Some((_, other)) => merge(&mut names, first, *other),
-            None => by_deviation.push((*deviation, first)),
+        for key in shared(point).into_iter().filter(|key| key.1.is_some()) {
+            match known.iter().find(|own| own.0 == key) {
+                Some((_, other)) => merge(&mut names, first, *other),
+                None => known.push((key, first)),
+            }
         }
     }
     let mut roots = names.clone();
@@ -434,15 +507,22 @@ fn blocks(points: &[(Own, Option<usize>)], count: usize) -> Vec<Block> {
     let block = |root: usize| {
         let coefficients: Vec<usize> = (0..count).filter(|c| names[*c] == root).collect();
         let has = |own: &Own| own.scale.or(own.offset).is_some_and(|c| names[c] == root);
-        let deviations: Vec<Option<usize>> =
-            points.iter().filter(|own| has(&own.0)).map(|own| own.1).collect();
+        let scaled: Vec<&Point> = points.iter().filter(|point| has(&point.own)).collect();
         // Points without a scale tell of the standard deviation that they share.
-        let is_meant = |(own, deviation): &(Own, Option<usize>)| {
-            has(own) || deviation.is_some() && deviations.contains(deviation)
+        let is_meant = |point: &Point| {
+            let is_same = |own: &&Point| {
+                let pairs = shared(own).into_iter().zip(shared(point));
+                pairs.into_iter().any(|(a, b)| a == b && a.1.is_some())
+            };
+            has(&point.own) || scaled.iter().any(is_same)
         };
-        let is_mixed = deviations.windows(2).any(|pair| pair[0] != pair[1]);
-        let points = (0..points.len()).filter(|p| is_meant(&points[*p])).collect();
-        Block { points, coefficients, is_mixed }
+        let meant: Vec<usize> = (0..points.len()).filter(|p| is_meant(&points[*p])).collect();
+        let is_own = |number: &usize| meant.iter().any(|p| points[*p].joint == Some(*number));
+        let within = |number: usize| joints[number].within(&meant);
+        let joints: Vec<JointGroup> = (0..joints.len()).filter(is_own).map(within).collect();
+        let is_mixed = scaled.windows(2).any(|pair| pair[0].deviation != pair[1].deviation)
+            || joints.iter().any(|own| own.given.is_none());
+        Block { points: meant, coefficients, joints, is_mixed }
     };
     roots.into_iter().map(block).collect()
 }

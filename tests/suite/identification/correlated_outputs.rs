@@ -271,7 +271,6 @@ fn what_is_no_covariance_is_refused_at_its_place() {
         (outputs("\"estimate\"", "sigma = 0.1"), "and its covariance is estimated"),
         (outputs("\"estimate\"", "error = \"student\""), "neither normal nor log-normal"),
         (outputs("\"estimate\"", "below = 0.5"), "values beyond a limit"),
-        (outputs("\"estimate\"", "scale = \"estimate\""), "a scale or an offset"),
         (outputs("\"estimate\"", "weight = 2"), "has a `weight`"),
         (own("covariance = \"estimate\"").replace("d.csv", "apart.csv"), "at different instants"),
         (own("covariance = \"estimate\"").replace("d.csv", "few.csv"), "from 3 complete rows"),

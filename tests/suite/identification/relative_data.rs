@@ -187,6 +187,46 @@ fn a_scale_is_shared_by_series_with_deviations_of_their_own() {
     are_alike(&one, &other, &coefficients);
 }
 
+/// With a covariance that is given or estimated, also where a value is missing.
+#[test]
+fn scales_of_correlated_outputs_are_those_of_a_model_with_parameters() {
+    let folder = folder();
+    let cut = |(k, line): (usize, &str)| {
+        let cells: Vec<&str> = line.split(',').collect();
+        match k {
+            5 => format!("{},,{}\n", cells[0], cells[2]),
+            9 => format!("{},{},\n", cells[0], cells[1]),
+            _ => format!("{},{},{}\n", cells[0], cells[1], cells[2]),
+        }
+    };
+    let rows: String = data().lines().enumerate().map(cut).collect();
+    fs::write(folder.path().join("d.csv"), rows).unwrap();
+    let ranges =
+        "s = { min = 1, max = 1000 }\nb = { min = -50, max = 50 }\nc = { min = -50, max = 50 }\n";
+    let outputs = |names: [&str; 2], own: &str| {
+        format!(
+            "{} = {{ column = \"blot\"{own} }}, {} = {{ column = \"other\"{own} }}",
+            names[0], names[1]
+        )
+    };
+    let scale = ", scale = \"gel\", offset = \"estimate\"";
+    for covariance in ["\"estimate\"", "[[0.2, 0.3], [0.3, 1.5]]"] {
+        let of = |text: String| {
+            text.replace(
+                "[[experiment]]\n",
+                &format!("[[experiment]]\ncovariance = {covariance}\n"),
+            )
+        };
+        let relative = of(problem("", &outputs(["signal", "second"], scale)));
+        let (one, _) = solved(&folder, "relative", &relative);
+        let explicit = of(problem(ranges, &outputs(["scaled", "rescaled"], "")));
+        let (other, _) = solved(&folder, "explicit", &explicit);
+        let coefficients =
+            [(0, "scale", "s"), (1, "scale", "s"), (0, "offset", "b"), (1, "offset", "c")];
+        are_alike(&one, &other, &coefficients);
+    }
+}
+
 #[test]
 fn what_a_scale_makes_up_for_is_not_determined() {
     let folder = folder();

@@ -248,8 +248,6 @@ fn check(entry: &ExperimentEntry, series: &Series) -> Result<(), Diagnostic> {
         ("values beyond a limit (`below`, `above`)", "below")
     } else if matches!(series.sigma, Sigma::Variable(_) | Sigma::Formula(_)) {
         ("a sigma that is a formula", "sigma")
-    } else if !series.scaling.is_empty() {
-        ("a scale or an offset that is estimated", "scale")
     } else if is_weighted {
         ("a `weight`", "weight")
     } else {
