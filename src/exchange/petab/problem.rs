@@ -111,7 +111,6 @@ pub(super) fn read(
     let measurements = all(problem, "measurement_files", &required)?;
     refuse_columns(&parameters, &["priorDistribution", "priorParameters"], 1)?;
     refuse_columns(&observables, &["observablePlaceholders", "noisePlaceholders"], 1)?;
-    refuse_columns(&measurements, &["experimentId"], 1)?;
     let mut conditions = IndexMap::new();
     for row in all(problem, "condition_files", &["conditionId"])? {
         let name = row.required("conditionId")?.to_owned();
