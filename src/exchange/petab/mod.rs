@@ -407,15 +407,19 @@ impl Problem {
         Ok(Imported { problem, files, notes: self.notes() })
     }
 
-    /// Measurements without a value, which are left out.
+    /// Measurements without a value, which are left out, and bounds that do not count.
     fn notes(&self) -> Vec<String> {
         let empty = &self.measured.empty;
-        let Some(first) = empty.first() else { return Vec::new() };
-        let what = match empty.len() {
+        let left_out = empty.first().map(|first| match empty.len() {
             1 => format!("the measurement at {first} has no value and is left out"),
             n => format!("{n} measurements have no value and are left out (first at {first})"),
-        };
-        vec![what]
+        });
+        let deviations: Vec<&str> = self.deviations().into_iter().collect();
+        let unbounded = (!deviations.is_empty()).then(|| {
+            let names = deviations.join(", ");
+            format!("the bounds of standard deviations do not count: {names}")
+        });
+        left_out.into_iter().chain(unbounded).collect()
     }
 
     fn write_parameters(&self, text: &mut String) {
