@@ -112,15 +112,17 @@ impl JointGroup {
         let correlations = DMatrix::from_fn(self.size, self.size, |a, b| {
             covariance[(a, b)] / (sigma[a] * sigma[b])
         });
-        let mut known: Vec<(Vec<usize>, Option<(DMatrix<f64>, f64)>)> = Vec::new();
+        // The factors of the correlations of those outputs that rows have.
+        let (mut measured, mut factors) = (Vec::<Vec<usize>>::new(), Vec::new());
         let (mut log_determinants, mut square, mut blocks) = (0.0, 0.0, Vec::new());
         for row in &self.rows {
             let members: Vec<usize> = row.iter().map(|own| own.0).collect();
-            let at = known.iter().position(|own| own.0 == members).unwrap_or_else(|| {
-                known.push((members.clone(), factor(&correlations, &members)));
-                known.len() - 1
+            let at = measured.iter().position(|own| *own == members).unwrap_or_else(|| {
+                factors.push(factor(&correlations, &members));
+                measured.push(members.clone());
+                measured.len() - 1
             });
-            let Some((inverse, log_determinant)) = &known[at].1 else {
+            let Some((inverse, log_determinant)) = &factors[at] else {
                 (log_determinants, square) = (f64::NAN, f64::NAN);
                 continue;
             };

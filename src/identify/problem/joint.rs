@@ -78,16 +78,16 @@ pub(crate) fn group(series: &[Series], members: &[usize], noise: f64) -> JointGr
     for number in members {
         let (own, Some(joint)) = (&series[*number], joint(number)) else { continue };
         let weights = own.weights();
-        for k in 0..own.x.len() {
+        for (k, (x, y)) in own.x.iter().zip(&own.y).enumerate() {
             let row = own.rows.get(k).copied().unwrap_or(k);
-            let key = (own.experiment.as_str(), row, own.x[k].to_bits());
+            let key = (own.experiment.as_str(), row, x.to_bits());
             let at = keys.iter().position(|known| *known == key).unwrap_or_else(|| {
                 keys.push(key);
                 rows.push(Vec::new());
                 keys.len() - 1
             });
             rows[at].push((joint.member, firsts[*number] + k));
-            let weighted = weights[k] * own.y[k];
+            let weighted = weights[k] * y;
             squares[joint.member][0] += weighted * weighted;
             squares[joint.member][1] += 1.0;
         }

@@ -17,10 +17,13 @@ const ROUNDING: f64 = 1e-9;
 /// An estimated covariance needs so many complete rows more than it has outputs.
 const MORE: usize = 2;
 
+/// The place of an entry.
+type PlaceOf<'a> = Box<dyn Fn(&[&str]) -> Span + 'a>;
+
 /// The covariance of an experiment, and the place of what it says.
 struct Stated<'a> {
     table: CovarianceTable,
-    place: Box<dyn Fn(&[&str]) -> Span + 'a>,
+    place: PlaceOf<'a>,
     /// The name of the group where nothing else is said.
     usual: String,
 }

@@ -13,6 +13,9 @@ use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
 
+/// Makes an entry of the rows of a matrix.
+type FromMatrix<T> = fn(Vec<Vec<f64>>) -> T;
+
 /// The ways to write an entry `T`; `M` is what its table holds.
 struct Forms<T, M = IgnoredAny> {
     expected: &'static str,
@@ -20,7 +23,7 @@ struct Forms<T, M = IgnoredAny> {
     text: Option<fn(String) -> T>,
     truth: Option<fn(bool) -> T>,
     list: Option<fn(Vec<String>) -> T>,
-    matrix: Option<fn(Vec<Vec<f64>>) -> T>,
+    matrix: Option<FromMatrix<T>>,
     table: Option<fn(M) -> T>,
 }
 
