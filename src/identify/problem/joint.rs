@@ -51,7 +51,9 @@ pub(crate) fn groups(series: &[Series]) -> Vec<(&str, Vec<usize>)> {
 /// The instants of a group.
 pub(crate) fn group(series: &[Series], members: &[usize], noise: f64) -> JointGroup {
     let joint = |number: &usize| series[*number].joint.as_ref();
-    let size = 1 + members.iter().filter_map(joint).map(|own| own.member).max().unwrap_or(0);
+    // Outputs that were not measured have no series.
+    let size_of = |own: &Joint| own.correlations.as_ref().map_or(own.member + 1, Vec::len);
+    let size = members.iter().filter_map(joint).map(size_of).max().unwrap_or(1);
     let row_of = |own: &Joint| own.correlations.clone().map(|row| (own.member, row));
     let given: Option<Vec<(usize, Vec<f64>)>> =
         members.iter().filter_map(joint).map(row_of).collect();

@@ -87,6 +87,8 @@ pub struct Statistics {
     pub variance: f64,
     /// Whether the fitness is a robust one.
     pub(crate) robust: bool,
+    /// Whether some deviations are known and others estimated: neither is scaled by all residuals.
+    is_mixed: bool,
     /// Weights of the points: reciprocal standard deviations where these are known or estimated.
     pub weights: Vec<f64>,
     /// Weighted residuals, measured less simulated.
@@ -136,7 +138,7 @@ impl Statistics {
     /// What the root of the rise of the sum of squares is within the 95 % limit, in units of the
     /// residual variance.
     pub(super) fn quantile_of_squares(&self) -> f64 {
-        if self.believed || self.robust {
+        if self.believed || self.robust || self.is_mixed {
             return self.quantile;
         }
         self.quantile * (self.variance * self.freedom / self.square).sqrt()
@@ -178,6 +180,7 @@ impl Statistics {
             believed: false,
             variance: f64::NAN,
             robust: false,
+            is_mixed: false,
             weights: data.weights.clone(),
             residuals: data.residuals.clone(),
             repeated,
@@ -232,8 +235,10 @@ impl Statistics {
         let explicit = self.explicit.as_ref().map(|own| weighted(&own.columns, &data.scales));
         let columns = explicit.as_ref().unwrap_or(&best.columns);
         let spread = Spread::of(problem, evaluation, data, (columns, self.open));
+        let reduced = spread.reduced(problem, &best.columns);
+        let own = reduced.as_ref().unwrap_or(&best.columns);
         self.uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
-            true => uncertainty_given(&best.columns, spread.variance),
+            true => uncertainty_given(own, spread.variance),
             false => None,
         };
         self.inward = inward(problem, &best.values, self.uncertainty.as_ref());
@@ -241,11 +246,12 @@ impl Statistics {
             let plain = (!spread.robust).then(|| data.shared_residuals());
             let variances = [spread.variance, spread.rise()];
             let groups = &self.rank.non_identifiable;
-            AtBounds::of(&best.columns, groups, plain.as_deref(), &self.inward, variances)
+            AtBounds::of(own, groups, plain.as_deref(), &self.inward, variances)
         });
         (self.quantile, self.freedom, self.variance) =
             (spread.quantile, spread.freedom, spread.variance);
         (self.believed, self.robust) = (spread.believed, spread.robust);
+        self.is_mixed = spread.of_estimated.is_some();
     }
 
     /// Finds which parameters have no effect, and which act only together.
@@ -406,6 +412,9 @@ struct Spread {
     robust: bool,
     believed: bool,
     variance: f64,
+    /// Where some deviations are known and others estimated: what sensitivities of points with estimated
+    /// ones are multiplied with, so that their standard errors are those of as many degrees of freedom.
+    of_estimated: Option<f64>,
     /// The quantile of a 95 % interval.
     quantile: f64,
 }
@@ -428,8 +437,14 @@ impl Spread {
             && matches!(ErrorModel::of(problem), ErrorModel::Known | ErrorModel::Computed)
             && problem.objectives[0].0 != "log_likelihood";
         let effective = freedom::effective(problem, columns, freedom);
+        let is_known = |series: &Series| series.sigma.is_known();
+        let is_mixed = plain
+            && ErrorModel::of(problem) == ErrorModel::Estimated
+            && problem.series.iter().any(is_known);
+        let of_estimated = is_mixed.then(|| (freedom / data.shares.iter().sum::<f64>()).sqrt());
         let variance = match robust {
             Some(robust) => robust.variance,
+            None if is_mixed => effective.inflation,
             None if believed => 1.0,
             None => effective.inflation * data.square / freedom,
         };
@@ -439,7 +454,25 @@ impl Spread {
                 student_quantile(UPPER, robust.map_or(effective.freedom, |robust| robust.freedom))
             }
         };
-        Spread { freedom, robust: robust.is_some(), believed, variance, quantile }
+        Spread { freedom, robust: robust.is_some(), believed, variance, of_estimated, quantile }
+    }
+
+    /// Sensitivities whose parts at points with estimated deviations are smaller; `None` where all
+    /// deviations are of one kind.
+    fn reduced(&self, problem: &Problem, columns: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        let factor = self.of_estimated?;
+        let of_points: Vec<f64> = problem
+            .series
+            .iter()
+            .flat_map(|own| {
+                let factor = if own.sigma.is_known() { 1.0 } else { factor };
+                std::iter::repeat_n(factor, own.x.len())
+            })
+            .collect();
+        let reduced = |column: &Vec<f64>| {
+            column.iter().zip(&of_points).map(|(value, factor)| value * factor).collect()
+        };
+        Some(columns.iter().map(reduced).collect())
     }
 
     /// By how much the weighted sum of squares may rise within the 95 % limit of one parameter.
@@ -519,7 +552,7 @@ impl Statistics {
         }
         let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
         let pull = ends.find(|end| end.parameter == k)?.pull;
-        if self.believed || self.robust {
+        if self.believed || self.robust || self.is_mixed {
             return Some(pull);
         }
         // Residuals at the end of a range contain the misfit that the end causes: an error estimated

@@ -51,12 +51,21 @@ impl<'a> Stated<'a> {
     }
 
     /// The outputs whose errors are correlated.
-    fn outputs(&self, entry: &ExperimentEntry, is_own: bool) -> Result<Vec<String>, Diagnostic> {
+    fn outputs(
+        &self,
+        file: &ProblemFile,
+        entry: &ExperimentEntry,
+        is_own: bool,
+    ) -> Result<Vec<String>, Diagnostic> {
         let all = || entry.outputs.keys().cloned().collect::<Vec<String>>();
         let outputs =
             if self.table.outputs.is_empty() { all() } else { self.table.outputs.clone() };
         let place = (self.place)(&["outputs"]);
-        if let Some(name) = outputs.iter().find(|name| is_own && !all().contains(name)) {
+        let is_output = |name: &String| match is_own {
+            true => all().contains(name),
+            false => file.experiment.iter().any(|own| own.outputs.contains_key(name)),
+        };
+        if let Some(name) = outputs.iter().find(|name| !is_output(name)) {
             let fault = fault!(BAD_OPTION, "`covariance` names `{name}`, which is not an output");
             return Err(fault.help("name variables of `outputs`").at(place));
         }
@@ -206,7 +215,7 @@ pub(super) fn correlate(
     series: &mut [Series],
 ) -> Result<(), Diagnostic> {
     let Some(stated) = Stated::of(file, entry, label) else { return Ok(()) };
-    let outputs = stated.outputs(entry, entry.covariance.is_some())?;
+    let outputs = stated.outputs(file, entry, entry.covariance.is_some())?;
     let given = Given::of(&stated, &outputs)?;
     let group = stated.table.group.clone().unwrap_or_else(|| stated.usual.clone());
     if entry.spectrum.is_some() || !file.noise.is_empty() {

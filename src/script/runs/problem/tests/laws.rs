@@ -213,3 +213,26 @@ fn a_log_normal_prior_can_be_one_of_the_value() {
         assert!(negative(p) < beside, "{p} is no minimum");
     }
 }
+
+/// A given sigma is believed also where others are estimated: their scatter says nothing of it.
+#[test]
+fn given_deviations_stay_beside_estimated_ones() {
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+                   p = { min = 0.1, max = 9 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                   outputs = { a = { column = \"a\", sigma = 0.01 } }\n[[experiment]]\n\
+                   data = \"e.csv\"\noutputs = { a = { column = \"a\", sigma = \"estimate\" } }\n";
+    let estimated = [0.5, 1.5, 2.0, 1.1];
+    let rows = estimated.iter().enumerate().map(|(k, y)| format!("{k},{y}\n"));
+    let found = solved(&[
+        ("p.toml", problem.into()),
+        ("M.mo", MODEL.into()),
+        ("d.csv", "time,a\n0,1\n1,1.3\n2,0.8\n".into()),
+        ("e.csv", format!("time,a\n{}", rows.collect::<String>())),
+    ]);
+    let p = found.parameters[0].value;
+    let square = estimated.iter().map(|y| (y - p).powi(2)).sum::<f64>() / 4.0;
+    // The estimated part has the degrees of freedom of seven points and one parameter.
+    let information = 3.0 / 0.01_f64.powi(2) + 4.0 * (6.0 / 7.0) / square;
+    let (own, expected) = (found.parameters[0].deviation.unwrap(), information.sqrt().recip());
+    assert!((own - expected).abs() < 1e-3 * expected, "{own} {expected}\n{}", found.text());
+}
