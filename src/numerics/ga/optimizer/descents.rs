@@ -39,8 +39,9 @@ const IMPROVED: f64 = 1e-3;
 const SELDOM: usize = 5;
 /// Steps of a descent in one round; most of the problems of NIST need fewer.
 const STEPS: usize = 40;
-/// So many descents whose steps were used up are continued in each round: in long valleys the best one at
-/// the time may lead to a worse minimum than others.
+/// So many descents whose steps were used up are continued in each round, those first that promise most: in
+/// long valleys the best one at the time may lead to a worse minimum than others. Continuing the best three,
+/// Brannmark_JBC2010 ended 3.4 above its published minimum, which is found so.
 const CONTINUED: usize = 3;
 /// Steps to make the best minimum finer.
 const FINE_STEPS: usize = 100;
@@ -64,6 +65,8 @@ pub struct Pool {
     reach: Vec<f64>,
     /// Descents and the smallest sum of squares at the begin of each round.
     rounds: Vec<(usize, f64)>,
+    /// The sum of squares of each descent where it was continued last.
+    continued: Vec<f64>,
 }
 
 impl Pool {
@@ -78,6 +81,7 @@ impl Pool {
             accuracy,
             reach,
             rounds: Vec::new(),
+            continued: Vec::new(),
         }
     }
 
@@ -88,6 +92,7 @@ impl Pool {
         self.active.clear();
         self.rounds.push((self.descents.len(), self.smallest()));
         for open in self.open() {
+            self.continued[open] = self.descents[open].sum();
             self.descents[open].grant(STEPS, COARSE);
             self.active.push(open);
         }
@@ -100,17 +105,19 @@ impl Pool {
             let own = Descent::new(start, self.accuracy, STEPS, COARSE);
             self.descents.push(if is_short { own.within(&self.reach) } else { own });
             self.joined.push(None);
+            self.continued.push(f64::INFINITY);
             self.independent.push(number < independent);
         }
         self.shares = vec![0; self.active.len()];
     }
 
-    /// The best of the descents whose steps were used up.
+    /// Of the descents whose steps were used up, those that lead farthest if they go on as they did.
     fn open(&self) -> Vec<usize> {
         let sum = |k: &usize| self.descents[*k].sum();
         let is_open = |k: &usize| !self.descents[*k].has_ended() && sum(k).is_finite();
         let mut open: Vec<usize> = (0..self.descents.len()).filter(is_open).collect();
-        open.sort_by(|a, b| sum(a).total_cmp(&sum(b)));
+        let next = |k: &usize| sum(k) * (sum(k) / self.continued[*k]);
+        open.sort_by(|a, b| next(a).total_cmp(&next(b)).then(sum(a).total_cmp(&sum(b))));
         open.truncate(CONTINUED);
         open
     }
