@@ -210,6 +210,14 @@ impl Functions {
     /// Whether all that a function does besides giving results, itself or by what it calls, is to draw
     /// random numbers.
     pub(crate) fn draws_alone(&self, function: u32) -> bool {
+        let is_drawn = |call: &ExternalCall| {
+            call.entry.c.is_none() && matches!(call.entry.effect, Effect::None | Effect::State)
+        };
+        self.holds_throughout(function, |code| code.externals.iter().all(is_drawn))
+    }
+
+    /// Whether something holds for a function and all that it calls.
+    pub(super) fn holds_throughout(&self, function: u32, holds: impl Fn(&Code) -> bool) -> bool {
         let mut seen = vec![false; self.codes.len()];
         let mut stack = vec![function as usize];
         while let Some(at) = stack.pop() {
@@ -217,10 +225,7 @@ impl Functions {
                 continue;
             }
             let code = &self.codes[at];
-            let is_drawn = |call: &ExternalCall| {
-                call.entry.c.is_none() && matches!(call.entry.effect, Effect::None | Effect::State)
-            };
-            if !code.externals.iter().all(is_drawn) {
+            if !holds(code) {
                 return false;
             }
             stack.extend(code.instructions.iter().filter_map(|instruction| match instruction {

@@ -6,22 +6,8 @@ impl Functions {
     /// Whether the derivative of a function, or its value, may jump: it decides by a relation, other than
     /// that of a counted loop, calls one of the table that has kinks, or what is not known.
     pub(crate) fn has_kinks(&self, function: u32) -> bool {
-        let mut seen = vec![false; self.codes.len()];
-        let mut stack = vec![function as usize];
-        while let Some(at) = stack.pop() {
-            if std::mem::replace(&mut seen[at], true) {
-                continue;
-            }
-            let code = &self.codes[at];
-            if code.instructions.iter().any(|instruction| code.is_kink(instruction)) {
-                return true;
-            }
-            stack.extend(code.instructions.iter().filter_map(|instruction| match instruction {
-                Instruction::Call { function, .. } => Some(*function as usize),
-                _ => None,
-            }));
-        }
-        false
+        let is_smooth = |code: &Code| !code.instructions.iter().any(|own| code.is_kink(own));
+        !self.holds_throughout(function, is_smooth)
     }
 }
 
@@ -45,11 +31,17 @@ impl Code {
         })
     }
 
-    /// Whether the register is the counter of a loop, which increases by itself.
+    /// Whether the register is the counter of a loop: it begins at 0 and increases by 1.
     fn counts(&self, register: u32) -> bool {
-        self.instructions.iter().any(|own| match own {
-            Instruction::Add { d, a, .. } => *d == register && *a == register,
+        let is_one = |b: u32| self.constants.contains(&(b, 1.0));
+        let is_begun = self.instructions.iter().any(|own| match own {
+            Instruction::Constant { d, value } => *d == register && *value == 0.0,
             _ => false,
-        })
+        });
+        is_begun
+            && self.instructions.iter().any(|own| match own {
+                Instruction::Add { d, a, b } => *d == register && *a == register && is_one(*b),
+                _ => false,
+            })
     }
 }

@@ -13,7 +13,7 @@ pub(in crate::lower) struct Before {
     counts: [usize; 5],
     assertions: usize,
     inlined: usize,
-    /// Where in an expression it was.
+    /// How many operators were around it in which references mean variables.
     raw: usize,
 }
 
