@@ -137,14 +137,16 @@ pub(crate) fn solved(
         let mut experiments: Vec<String> =
             members.iter().map(|k| series[*k].experiment.clone()).collect();
         experiments.dedup();
-        let row = |a: usize| (0..own.size).map(|b| correlations[(a, b)]).collect();
+        let there: Vec<usize> = (0..own.size).filter(|k| squares[*k][1] > 0.0).collect();
+        let sigma = |k: &usize| (squares[*k][0] / squares[*k][1]).sqrt();
+        let row = |a: &usize| there.iter().map(|b| correlations[(*a, *b)]).collect();
         SolvedCovariance {
-            outputs: (0..own.size).map(of).collect(),
+            outputs: there.iter().map(|k| of(*k)).collect(),
             estimated: series[members[0]].sigma.is_estimated(),
-            sigmas: squares.into_iter().map(|[square, n]| f64::sqrt(square / n)).collect(),
-            correlations: (0..own.size).map(row).collect(),
+            sigmas: there.iter().map(sigma).collect(),
+            correlations: there.iter().map(row).collect(),
             rows: own.rows.len(),
-            incomplete: own.rows.iter().filter(|row| row.len() < own.size).count(),
+            incomplete: own.rows.iter().filter(|row| row.len() < there.len()).count(),
             experiments,
         }
     };

@@ -2,10 +2,9 @@
 //! computed with numpy and SciPy: generalized least squares with the covariance that is given, and with
 //! RᵀR/n of the residuals, or that of the EM algorithm, iterated to the end.
 
+use crate::support::program::written as gapi;
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 use tempfile::TempDir;
 
 const MODEL: &str = "model Pair
@@ -40,14 +39,6 @@ const DATA: &str = "0.29999999999999999,1.2171442344059273,0.30415726516195968
 6,0.031004139691471172,1.9299081348467357
 ";
 const GIVEN: &str = "[[0.0025, 0.004], [0.004, 0.01]]";
-
-fn gapi(folder: &Path, arguments: &[&str]) -> (bool, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
-    let run = command.args(arguments).current_dir(folder).env_remove("MODELICAPATH").output();
-    let run = run.unwrap();
-    let text = [run.stdout, run.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
-    (run.status.success(), text)
-}
 
 /// The data, also without some values, and in two halves.
 fn folder() -> TempDir {
@@ -204,6 +195,26 @@ fn experiments_have_covariances_of_their_own_or_share_one() {
     }
     let (found, count) = log(&both(["covariance = \"estimate\""; 2]));
     assert!((found + 68.034975691).abs() < 1e-8 && count == 2, "{found} {count}");
+}
+
+/// An experiment that measures one of the outputs has its variance, as if the others were not named; a name
+/// that no experiment has is refused.
+#[test]
+fn outputs_that_were_not_measured_take_no_part() {
+    let folder = folder();
+    let alone = "[[experiment]]\nname = \"last\"\ndata = \"last.csv\"\noutputs = { a = ";
+    let own = experiment("first", &format!("covariance = {GIVEN}"));
+    let named = format!("covariance = {{ outputs = [\"a\", \"b\"], matrix = {GIVEN} }}\n");
+    let (result, text) = solved(&folder, &problem(&named, &format!("{own}{alone}\"a\" }}\n")));
+    assert!(!text.contains("NaN") && !text.contains("nan"), "{text}");
+    let sigma = format!("{own}{alone}{{ column = \"a\", sigma = 0.05 }} }}\n");
+    let (expected, _) = solved(&folder, &problem("", &sigma));
+    let log = |result: &Value| result["negative_log_likelihood"].as_f64().unwrap();
+    assert!((log(&result) - log(&expected)).abs() < 1e-9, "{} {}", log(&result), log(&expected));
+    let wrong = problem(&named.replace("\"b\"", "\"other\""), &own);
+    fs::write(folder.path().join("p.toml"), wrong + alone + "\"a\" }\n").unwrap();
+    let (done, output) = gapi(folder.path(), &["identify", "p.toml", "--out", "o", "--plain"]);
+    assert!(!done && output.contains("`covariance` names `other`"), "{output}");
 }
 
 #[test]

@@ -1,20 +1,10 @@
 //! What measured data mean in time and in units: rows on both sides of an event, gaps, times that count
 //! from a date, differences of temperatures. The data are exact solutions.
 
+use crate::support::program::written as gapi;
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 use tempfile::TempDir;
-
-/// Runs a command of the program in a folder with these files.
-fn gapi(folder: &Path, arguments: &[&str]) -> (bool, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
-    let run = command.args(arguments).current_dir(folder).env_remove("MODELICAPATH").output();
-    let run = run.unwrap();
-    let text = [run.stdout, run.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
-    (run.status.success(), text)
-}
 
 fn folder(files: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();

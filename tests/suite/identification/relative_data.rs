@@ -1,10 +1,9 @@
 //! Data in arbitrary units: scales and offsets that are estimated are those of a model that has them as
 //! parameters, with the same minimum, standard errors, profiles and bands.
 
+use crate::support::program::written as gapi;
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 use tempfile::TempDir;
 
 const MODEL: &str = "model Chain
@@ -46,14 +45,6 @@ fn data() -> String {
         );
     }
     text
-}
-
-fn gapi(folder: &Path, arguments: &[&str]) -> (bool, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
-    let run = command.args(arguments).current_dir(folder).env_remove("MODELICAPATH").output();
-    let run = run.unwrap();
-    let text = [run.stdout, run.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
-    (run.status.success(), text)
 }
 
 fn folder() -> TempDir {

@@ -26,6 +26,13 @@ pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// Whether a run succeeded, and all that it wrote.
+pub(crate) fn written(folder: &Path, arguments: &[&str]) -> (bool, String) {
+    let Output { status, stdout, stderr } = command(folder, arguments).output().unwrap();
+    let text = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
+    (status.success(), text)
+}
+
 /// What a run left: exit code, standard output, standard error.
 pub(crate) fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
     let Output { status, stdout, stderr } = command(folder.path(), arguments).output().unwrap();

@@ -180,7 +180,7 @@ fn matrix_of(rows: &[Vec<f64>], outputs: &[String]) -> Result<DMatrix<f64>, Faul
     }
     let matrix = DMatrix::from_fn(n, n, |a, b| rows[a][b]);
     if matrix.iter().any(|own| !own.is_finite()) {
-        bail!(BAD_OPTION, "the matrix contains what is no finite number");
+        bail!(BAD_OPTION, "the matrix contains what is not a finite number");
     }
     for a in 0..n {
         for b in 0..a {
