@@ -70,7 +70,7 @@ pub(super) fn rows(file: &str, text: &str, required: &[&str]) -> Result<Vec<Row>
                 return Err(Refusal::new(place, fault).in_file(file));
             }
             if let Some((own, known)) = in_other_letters(&cells) {
-                let fault = Fault::new(BAD_OPTION, format!("`{own}` is no column of PEtab"))
+                let fault = Fault::new(BAD_OPTION, format!("`{own}` is not a column of PEtab"))
                     .help(format!("write `{known}`"));
                 return Err(Refusal::new(place, fault).in_file(file));
             }

@@ -165,7 +165,7 @@ fn a_kink_without_events_is_left_to_the_implicit_method() {
         }
     }
     assert!(ends.iter().all(|own| (own - exact).abs() < 1e-5), "{ends:?} {exact}");
-    // The end of a counted loop is no kink.
+    // The end of a counted loop is not a kink.
     let smooth = program(&text.replace("KINK", "mean(x)"), &[input]);
     let (_, statistics) = run(&mut observing(&smooth, "y"), true, 1e-6);
     assert_eq!(statistics.explicit_steps, statistics.steps, "{statistics:?}");

@@ -346,7 +346,7 @@ fn a_model_in_modelica_is_extended_by_its_noise() {
     };
     let own = result["negative_log_likelihood"].as_f64().unwrap();
     assert!((own - negative(k)).abs() < 1e-6, "{own} {}", negative(k));
-    assert!(negative(k) < negative(1.003 * k).min(negative(0.997 * k)), "{k} is no minimum");
+    assert!(negative(k) < negative(1.003 * k).min(negative(0.997 * k)), "{k} is not a minimum");
 }
 
 /// The problem in version 2 has the fit that it has in version 1.

@@ -289,7 +289,7 @@ impl Source<'_> {
         let name = self.entry.set.values.keys().find(is_computed)?;
         let fault = fault!(
             BAD_OPTION,
-            "`{name}` is no parameter of `{}`: its equations determine it", self.file.model;
+            "`{name}` is not a parameter of `{}`: its equations determine it", self.file.model;
             help: "for its value at the begin write `start = {{ {name} = … }}`"
         );
         Some(fault.at(self.entry.places.at(&["set", name])))

@@ -210,7 +210,7 @@ fn a_log_normal_prior_can_be_one_of_the_value() {
         let own = found.likelihood.negative_log_likelihood.unwrap();
         assert!((own - negative(p)).abs() < 1e-8, "{own} {}", negative(p));
         let beside = negative(1.001 * p).min(negative(0.999 * p));
-        assert!(negative(p) < beside, "{p} is no minimum");
+        assert!(negative(p) < beside, "{p} is not a minimum");
     }
 }
 

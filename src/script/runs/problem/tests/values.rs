@@ -292,7 +292,7 @@ fn a_variable_that_equations_determine_is_not_set() {
     let head = "model = \"Cell\"\n[parameters]\nk = { min = 0.1, max = 10 }\n";
     let experiment = "outputs = { x = \"y\" }\n";
     let refused = found(head, &format!("{experiment}set = {{ x = 1 }}"), &data);
-    says(&refused, &["`x` is no parameter of `Cell`", "start = { x = ", "| 1"]);
+    says(&refused, &["`x` is not a parameter of `Cell`", "start = { x = ", "| 1"]);
     value(&found(head, &format!("{experiment}start = {{ x = 1 }}"), &data), "k", 0.5);
 }
 
