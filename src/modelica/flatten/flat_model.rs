@@ -11,6 +11,7 @@
 use super::recorded::RecordedInput;
 use crate::eval::Function;
 use crate::external::Resources;
+pub use crate::inference::Variability;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{self, CausalityPrefix, Expression, Statement};
@@ -147,21 +148,6 @@ pub enum BaseType {
     ExternalObject(Name),
     /// `Clock` (MLS §16.3): it has no value, it ticks.
     Clock,
-}
-
-/// When a variable may change (MLS §3.8).
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
-)]
-pub enum Variability {
-    /// Never.
-    Constant,
-    /// Not during a simulation.
-    Parameter,
-    /// At events.
-    Discrete,
-    /// Always.
-    Continuous,
 }
 
 impl Variable {

@@ -4,17 +4,18 @@
 //! and pass them through connectors, `out.pkg = SerialPackager(n)` and `connect(a.out, b.in)`: each
 //! variable is bound to the one object that its equations lead to, and the equations are gone.
 
+use super::balance;
 use super::errors::TYPE_MISMATCH;
 use super::flat_expression::flat_reference;
 use super::flat_model::{BaseType, FlatModel, Variability};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::inference::{VariabilityOfNames, most_variable};
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
     Comment, ComponentReference, Equation, EquationKind, Expression, ExpressionKind, Subscript,
 };
-use crate::syntax::visit::{Visit, walk_reference};
 use indexmap::IndexMap;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
@@ -93,20 +94,21 @@ fn is_constructor(e: &Expression) -> bool {
 
 /// Whether an expression has variables that are known only when the simulation starts.
 fn needs_variables(model: &FlatModel, e: &Expression) -> bool {
-    struct Variables<'m>(&'m FlatModel, bool);
-    impl Visit for Variables<'_> {
-        fn reference(&mut self, reference: &ComponentReference) {
-            walk_reference(self, reference);
-            let variable = path(reference).and_then(|path| self.0.variables.get(path.as_str()));
-            self.1 |= variable.is_some_and(|variable| {
-                variable.variability > Variability::Parameter
-                    && !matches!(variable.base, BaseType::ExternalObject(_))
-            });
+    let most = most_variable(&mut VariabilityIn(model), e);
+    most.is_some_and(|most| most.variability > Variability::Parameter)
+}
+
+/// When the variables of a model may change; external objects do not.
+struct VariabilityIn<'m>(&'m FlatModel);
+
+impl VariabilityOfNames for VariabilityIn<'_> {
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<Variability> {
+        let variable = self.0.variables.get(&*balance::path(reference))?;
+        match variable.base {
+            BaseType::ExternalObject(_) => None,
+            _ => Some(variable.variability),
         }
     }
-    let mut variables = Variables(model, false);
-    variables.expression(e);
-    variables.1
 }
 
 /// What equations say of external objects.

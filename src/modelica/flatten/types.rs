@@ -9,12 +9,12 @@ use crate::eval::{FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::instantiate::tree::Tree;
-use crate::functions::{self, VariabilityRule};
-use crate::inference::{self, ElementType, Elementary, Sizes, SizesOfNames, TypesOfNames};
-use crate::name::Ident;
+use crate::inference::{
+    self, ElementType, Elementary, Sizes, SizesOfNames, TypesOfNames, VariabilityOfNames,
+};
 use crate::source::Span;
-use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, ForIndex};
-use crate::syntax::visit::{Visit, walk_expression, walk_reference};
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use crate::syntax::visit::Visit;
 
 /// What the types of resolved expressions follow from: the variables and the functions that they
 /// name.
@@ -89,37 +89,26 @@ impl Types<'_> {
         if variable.variability > Variability::Parameter {
             return Ok(());
         }
-        let Some((name, found)) = self.most_variable(e) else { return Ok(()) };
-        if found <= variable.variability {
-            return Ok(());
-        }
         let what = |variability| match variability {
             Variability::Constant => "a constant",
             Variability::Parameter => "a parameter",
             Variability::Discrete | Variability::Continuous => "a variable",
         };
+        let Some(most) = inference::most_variable(&mut &*self, e) else { return Ok(()) };
+        if most.variability <= variable.variability {
+            return Ok(());
+        }
+        let found = match most.is_operator {
+            true => format!("`{}`, whose value changes at events", most.name.name()),
+            false => format!("`{}`, which is {}", path(&most.name), what(most.variability)),
+        };
         Err(fault!(
             NOT_CONSTANT,
-            "`{}` is {}, but its value depends on `{name}`, which is {}",
+            "`{}` is {}, but its value depends on {found}",
             variable.name,
-            what(variable.variability),
-            what(found)
+            what(variable.variability)
         )
         .at(e.span))
-    }
-
-    /// The variable in an expression that changes most often, with its variability.
-    fn most_variable(&self, e: &Expression) -> Option<(String, Variability)> {
-        let mut search = MostVariable { types: self, iterators: Vec::new(), most: None };
-        search.expression(e);
-        search.most
-    }
-
-    fn variability_of(&self, reference: &ComponentReference) -> Option<Variability> {
-        if reference.as_ident().is_some_and(|name| name == "time") {
-            return Some(Variability::Continuous);
-        }
-        self.named(reference).map(|variable| variable.variability)
     }
 
     fn named(&self, reference: &ComponentReference) -> Option<&Variable> {
@@ -173,6 +162,12 @@ impl TypesOfNames for &Types<'_> {
     }
 }
 
+impl VariabilityOfNames for &Types<'_> {
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<Variability> {
+        self.named(reference).map(|variable| variable.variability)
+    }
+}
+
 impl SizesOfNames for &Types<'_> {
     fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
         Some(self.named(reference)?.dims.iter().copied().map(Some).collect())
@@ -193,62 +188,6 @@ impl SizesOfNames for &Types<'_> {
             && arguments.positional.iter().zip(&user.inputs).all(fits);
         Some(user.outputs.first().filter(|_| all_fit).map(|output| vec![None; output.dims.len()]))
     }
-}
-
-/// Searches the variable that changes most often.
-struct MostVariable<'i, 'a> {
-    types: &'i Types<'a>,
-    /// Iterators around, which may have the name of a variable.
-    iterators: Vec<Ident>,
-    most: Option<(String, Variability)>,
-}
-
-impl MostVariable<'_, '_> {
-    /// Expressions with iterators, in whose ranges those after them are known.
-    fn iterated<'e>(
-        &mut self,
-        indices: &[ForIndex],
-        elements: impl IntoIterator<Item = &'e Expression>,
-    ) {
-        let outside = self.iterators.len();
-        indices.iter().filter_map(|index| index.range.as_ref()).for_each(|e| self.expression(e));
-        self.iterators.extend(indices.iter().map(|index| index.name.node));
-        elements.into_iter().for_each(|element| self.expression(element));
-        self.iterators.truncate(outside);
-    }
-}
-
-impl Visit for MostVariable<'_, '_> {
-    fn expression(&mut self, e: &Expression) {
-        match &e.kind {
-            ExpressionKind::Call { function, .. }
-                if function.as_ident().is_some_and(reads_sizes) => {}
-            ExpressionKind::Call { arguments, .. } if !arguments.iterators.is_empty() => {
-                self.iterated(&arguments.iterators, &arguments.positional);
-            }
-            ExpressionKind::ArrayIteration { element, indices } => {
-                self.iterated(indices, [&**element]);
-            }
-            _ => walk_expression(self, e),
-        }
-    }
-
-    fn reference(&mut self, reference: &ComponentReference) {
-        let is_iterator = reference.as_ident().is_some_and(|name| self.iterators.contains(&name));
-        if !is_iterator
-            && let Some(found) = self.types.variability_of(reference)
-            && self.most.as_ref().is_none_or(|(_, known)| found > *known)
-        {
-            self.most = Some((path(reference).into_owned(), found));
-        }
-        walk_reference(self, reference);
-    }
-}
-
-/// Whether a function reads sizes of its argument and not its value.
-fn reads_sizes(name: Ident) -> bool {
-    let entry = functions::find(name.as_str());
-    entry.is_some_and(|entry| entry.variability == VariabilityRule::Never)
 }
 
 /// Whether a value of one type can be given to a variable of another; literals of enumerations

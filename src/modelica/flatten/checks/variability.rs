@@ -2,57 +2,35 @@
 //! (MLS §3.8).
 
 use super::scope::Scope;
-use crate::functions::{self, VariabilityRule};
+use crate::inference::{Variability, VariabilityOfNames, most_variable};
 use crate::name::Ident;
-use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
-use crate::syntax::visit::{Visit, walk_expression};
+use crate::syntax::ast::{ComponentReference, Expression};
 
 /// Whether an expression in a class keeps its value during a simulation. Names that the class does
 /// not tell about, and those of the loop variables around, are taken to do so.
 pub fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
-    let mut walk = VariabilityCheck { class, loops, varies: false };
-    walk.expression(expression);
-    !walk.varies
+    let most = most_variable(&mut DeclaredVariability { class, loops }, expression);
+    most.is_none_or(|most| most.variability <= Variability::Parameter)
 }
 
-struct VariabilityCheck<'a> {
+struct DeclaredVariability<'a> {
     class: Scope<'a>,
     loops: &'a [Ident],
-    varies: bool,
 }
 
-impl Visit for VariabilityCheck<'_> {
-    fn expression(&mut self, expression: &Expression) {
-        if let ExpressionKind::Call { function, .. } = &expression.kind {
-            let name = match function.parts.as_slice() {
-                [name] => name.name.as_str(),
-                [package, _] if package.name.as_str() == "Connections" => return,
-                _ => "",
-            };
-            match functions::find(name).map(|entry| entry.variability) {
-                Some(VariabilityRule::Never) => return,
-                Some(VariabilityRule::Always) => self.varies = true,
-                Some(VariabilityRule::OfArguments) | None => {}
-            }
-        }
-        walk_expression(self, expression);
-    }
-
-    fn reference(&mut self, reference: &ComponentReference) {
+impl VariabilityOfNames for DeclaredVariability<'_> {
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<Variability> {
         let name = reference.parts[0].name;
-        let is_simple = reference.parts.len() == 1;
-        if self.loops.contains(&name) {
-            return;
+        // Parts of components may be parameters whatever the component is.
+        if self.loops.contains(&name) || reference.parts.len() > 1 {
+            return None;
         }
-        match self.class.component(name) {
-            None => self.varies |= is_simple && !reference.global && name.as_str() == "time",
-            // Parts of components may be parameters whatever the component is.
-            Some(component) if is_simple => {
-                let is_outer = component.clause.prefixes.outer;
-                let is_predefined = component.class().is_none_or(|c| c.predefined().is_some());
-                self.varies |= !component.is_fixed() && !is_outer && is_predefined;
-            }
-            Some(_) => {}
+        let component = self.class.component(name)?;
+        let is_outer = component.clause.prefixes.outer;
+        let is_predefined = component.class().is_none_or(|c| c.predefined().is_some());
+        match component.is_fixed() {
+            true => Some(Variability::Parameter),
+            false => (!is_outer && is_predefined).then_some(Variability::Continuous),
         }
     }
 }
