@@ -9,7 +9,7 @@ mod sizes;
 mod types;
 mod variability;
 
-pub(crate) use operators::{Sizes, is_relation};
+pub(crate) use operators::{Sizes, is_arithmetic, is_relation};
 pub(crate) use sizes::{SizesOfNames, all_known, at_end, element_sizes, sizes_of};
 pub(crate) use types::{ElementType, Elementary, TypesOfNames, chain_types, type_of};
 pub use variability::Variability;

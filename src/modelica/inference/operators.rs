@@ -22,6 +22,11 @@ pub(crate) fn is_relation(operator: BinaryOperator) -> bool {
     matches!(operator, Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual)
 }
 
+/// Whether its operands are numbers (MLS §10.6), the sum of Strings aside.
+pub(crate) fn is_arithmetic(operator: BinaryOperator) -> bool {
+    !is_relation(operator) && !is_logical(operator)
+}
+
 /// Whether its operands are Boolean.
 fn is_logical(operator: BinaryOperator) -> bool {
     matches!(operator, BinaryOperator::And | BinaryOperator::Or)

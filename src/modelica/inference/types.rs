@@ -146,10 +146,11 @@ impl<N: TypesOfNames> Walk<'_, N> {
         self.names.of_reference(reference)
     }
 
-    /// What is known within expressions that iterators repeat; a range may use those before it.
+    /// What is known within expressions that iterators repeat. The last iterator is the outer one
+    /// (MLS §10.4.1): the ranges of those before it may use it.
     fn iterated<R>(&mut self, indices: &[ForIndex], within: impl FnOnce(&mut Self) -> R) -> R {
         let outside = self.iterators.len();
-        for index in indices {
+        for index in indices.iter().rev() {
             let found = index.range.as_ref().and_then(|range| self.type_of(range));
             self.iterators.push((index.name.node, found));
         }

@@ -75,15 +75,18 @@ impl<N: VariabilityOfNames> Walk<'_, N> {
         Reads::Arguments
     }
 
-    /// Elements that iterators repeat.
+    /// Elements that iterators repeat. The last iterator is the outer one (MLS §10.4.1): the ranges
+    /// of those before it may use it.
     fn iterated<'e>(
         &mut self,
         indices: &[ForIndex],
         elements: impl IntoIterator<Item = &'e Expression>,
     ) {
         let outside = self.iterators.len();
-        indices.iter().filter_map(|index| index.range.as_ref()).for_each(|e| self.expression(e));
-        self.iterators.extend(indices.iter().map(|index| index.name.node));
+        for index in indices.iter().rev() {
+            index.range.iter().for_each(|range| self.expression(range));
+            self.iterators.push(index.name.node);
+        }
         elements.into_iter().for_each(|element| self.expression(element));
         self.iterators.truncate(outside);
     }

@@ -484,3 +484,39 @@ fn a_flow_variable_outside_of_connectors_is_a_variable() {
          model M C c; flow Real x = 3; equation c.e = 1; end M;",
     );
 }
+
+/// What iterators name in an expression is no variable; operators of events are no parameters.
+#[test]
+fn variability_is_that_of_all_that_an_expression_reads() {
+    let connected = |condition: &str| {
+        format!(
+            "connector C Real v; flow Real i; end C; model M C a, b; Real i = time; Integer n = 1;
+            parameter Real p[3] = {{1, 2, 3}};
+            equation if {condition} then connect(a, b); end if; end M;"
+        )
+    };
+    accepted(&connected("sum(i for i in 1:3) > 0"));
+    accepted(&connected("p[2] > 0"));
+    refused(&connected("p[n] > 0"), "misplaced-equation");
+    refused("model M parameter Boolean p = initial(); end M;", "not-constant");
+    refused("model M parameter Real p = if terminal() then 1 else 2; end M;", "not-constant");
+    refused("model M Boolean b = sample(time, 2*0.1); end M;", "illegal-argument");
+}
+
+/// The last iterator is the outer one (MLS §10.4.1).
+#[test]
+fn ranges_of_iterators_use_those_after_them() {
+    let text = "model M Real j = 1.5; Integer n = sum(i for i in j:j + 1, j in 1:3); end M;";
+    accepted(text);
+    refused(
+        "model M Real j = 1.5; Integer n = sum(i + k for i in 1:2, k in j:3); end M;",
+        "type-mismatch",
+    );
+}
+
+#[test]
+fn operators_by_element_take_numbers_too() {
+    for operator in ["+", ".+", "-", ".-", "*", ".*", "/", "./", "^", ".^"] {
+        refused(&format!("model M Real x = true {operator} 1; end M;"), "type-mismatch");
+    }
+}

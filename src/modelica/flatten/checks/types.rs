@@ -41,7 +41,8 @@ pub fn check_with_values(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 }
 
 fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
-    let mut walk = TypeCheck { class, with_values, loops: Vec::new(), errors };
+    let types = DeclaredTypes { class, loops: Vec::new() };
+    let mut walk = TypeCheck { types, with_values, errors };
     for component in class.components() {
         walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
@@ -64,11 +65,9 @@ fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
 type Typed<'e> = (&'e Expression, Option<CheckedType>);
 
 struct TypeCheck<'a, 'e> {
-    class: Scope<'a>,
+    types: DeclaredTypes<'a>,
     /// Whether bindings, equations and assignments are checked.
     with_values: bool,
-    /// The loop variables met; what they are is not looked at.
-    loops: Vec<Ident>,
     errors: &'e mut Vec<Diagnostic>,
 }
 
@@ -84,7 +83,7 @@ impl TypeCheck<'_, '_> {
             CheckedType::Boolean => "a Boolean".to_owned(),
             CheckedType::String => "a String".to_owned(),
             CheckedType::Enumeration(class) => {
-                format!("of the enumeration `{}`", self.class.of(class).name())
+                format!("of the enumeration `{}`", self.types.class.of(class).name())
             }
         }
     }
@@ -96,7 +95,9 @@ impl TypeCheck<'_, '_> {
         else {
             return;
         };
-        let (Some(declared), Some(found)) = (kind_of(component), self.kind(value)) else { return };
+        let (Some(declared), Some(found)) = (kind_of(component), self.types.type_of(value)) else {
+            return;
+        };
         let has_enumeration =
             [declared, found].iter().any(|kind| matches!(kind, CheckedType::Enumeration(_)));
         if (has_enumeration || self.with_values) && !self.same(declared, found) {
@@ -107,7 +108,7 @@ impl TypeCheck<'_, '_> {
 
     /// A value that a statement assigns. Old libraries compute with enumerations.
     fn assigned(&mut self, target: &ComponentReference, value: &Expression) {
-        let kinds = (self.kind_of_reference(target), self.kind(value));
+        let kinds = (self.types.kind_of_reference(target), self.types.type_of(value));
         if let (Some(declared), Some(found)) = kinds
             && self.with_values
             && ![declared, found].iter().any(|kind| matches!(kind, CheckedType::Enumeration(_)))
@@ -120,7 +121,7 @@ impl TypeCheck<'_, '_> {
 
     /// The sides of an equation.
     fn equated(&mut self, left: &Expression, right: &Expression) {
-        if let (Some(a), Some(b)) = (self.kind(left), self.kind(right))
+        if let (Some(a), Some(b)) = (self.types.type_of(left), self.types.type_of(right))
             && self.with_values
             && !self.same(a, b)
         {
@@ -131,8 +132,7 @@ impl TypeCheck<'_, '_> {
 
     /// Arithmetic is defined for numbers (MLS §10.6), the sum of strings aside.
     fn operands(&mut self, operator: BinaryOperator, operands: [Typed<'_>; 2]) {
-        use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
-        if matches!(operator, Add | Subtract | Multiply | Divide | Power) {
+        if inference::is_arithmetic(operator) {
             operands.into_iter().for_each(|operand| self.term(operand));
         }
     }
@@ -156,9 +156,9 @@ impl TypeCheck<'_, '_> {
 
     /// The operations of a chain, each with the types of its operands.
     fn operations(&mut self, chain: &Expression) {
-        let types = inference::chain_types(&mut &*self, chain);
+        let types = inference::chain_types(&mut &self.types, chain);
         for (one, left) in chain.chain().1.into_iter().zip(types) {
-            let operands = [(one.left, left), (one.right, self.kind(one.right))];
+            let operands = [(one.left, left), (one.right, self.types.type_of(one.right))];
             match inference::is_relation(one.operator) {
                 true => self.relation(operands),
                 false => self.operands(one.operator, operands),
@@ -169,18 +169,20 @@ impl TypeCheck<'_, '_> {
     /// The functions of numbers (MLS §3.7.1, §3.7.3).
     fn numeric_call(&mut self, function: &ComponentReference, arguments: &[Expression]) {
         let [name] = function.parts.as_slice() else { return };
-        let is_declared = self.class.class_named(&name.name.into()).is_some();
+        let is_declared = self.types.class.class_named(&name.name.into()).is_some();
         let is_numeric = functions::find(name.name.as_str()).is_some_and(Builtin::is_numeric);
         if !is_declared && is_numeric {
             for argument in arguments {
-                let found = self.kind(argument);
+                let found = self.types.type_of(argument);
                 self.numeric((argument, found), &format!("`{}` needs a number", name.name));
             }
         }
     }
 
     fn condition(&mut self, condition: &Expression) {
-        if let Some(kind) = self.kind(condition).filter(|kind| *kind != CheckedType::Boolean) {
+        if let Some(kind) =
+            self.types.type_of(condition).filter(|kind| *kind != CheckedType::Boolean)
+        {
             self.mismatch(condition, "a condition must be Boolean", kind);
         }
         self.expression(condition);
@@ -192,7 +194,8 @@ impl TypeCheck<'_, '_> {
             && function.parts.len() == 1
             && function.parts[0].name.as_str() == "assert";
         if let (true, Some(condition)) = (is_assert, arguments.positional.first())
-            && let Some(kind) = self.kind(condition).filter(|kind| *kind != CheckedType::Boolean)
+            && let Some(kind) =
+                self.types.type_of(condition).filter(|kind| *kind != CheckedType::Boolean)
         {
             self.mismatch(condition, "the condition of `assert` must be Boolean", kind);
         }
@@ -220,16 +223,30 @@ impl TypeCheck<'_, '_> {
     }
 
     fn literals(&self, enumeration: ClassId) -> Option<Vec<Ident>> {
-        match &self.class.of(enumeration).definition().specifier {
+        match &self.types.class.of(enumeration).definition().specifier {
             ClassSpecifier::Enumeration(known) => {
                 Some(known.literals.as_ref()?.iter().map(|one| one.name.node).collect())
             }
             _ => None,
         }
     }
+}
 
+/// Whether an expression in a class is a number, as far as the class tells.
+pub fn is_number(class: Scope<'_>, e: &Expression) -> bool {
+    DeclaredTypes { class, loops: Vec::new() }.type_of(e) == Some(CheckedType::Number)
+}
+
+/// What a class tells of the types of names.
+struct DeclaredTypes<'a> {
+    class: Scope<'a>,
+    /// The loop variables met; what they are is not looked at.
+    loops: Vec<Ident>,
+}
+
+impl DeclaredTypes<'_> {
     /// The type of an expression, where the class tells.
-    fn kind(&self, expression: &Expression) -> Option<CheckedType> {
+    fn type_of(&self, expression: &Expression) -> Option<CheckedType> {
         inference::type_of(&mut &*self, expression)
     }
 
@@ -276,7 +293,7 @@ impl ElementType for CheckedType {
     }
 }
 
-impl TypesOfNames for &TypeCheck<'_, '_> {
+impl TypesOfNames for &DeclaredTypes<'_> {
     type Type = CheckedType;
 
     fn of_reference(&mut self, reference: &ComponentReference) -> Option<CheckedType> {
@@ -304,18 +321,18 @@ impl Visit for TypeCheck<'_, '_> {
             ExpressionKind::If { branches, .. } => {
                 for (condition, _) in branches {
                     if let Some(kind) =
-                        self.kind(condition).filter(|kind| *kind != CheckedType::Boolean)
+                        self.types.type_of(condition).filter(|kind| *kind != CheckedType::Boolean)
                     {
                         self.mismatch(condition, "a condition must be Boolean", kind);
                     }
                 }
             }
             ExpressionKind::ArrayIteration { indices, .. } => {
-                self.loops.extend(indices.iter().map(|index| index.name.node));
+                self.types.loops.extend(indices.iter().map(|index| index.name.node));
             }
             ExpressionKind::Call { function, arguments } => {
                 self.numeric_call(function, &arguments.positional);
-                self.loops.extend(arguments.iterators.iter().map(|index| index.name.node));
+                self.types.loops.extend(arguments.iterators.iter().map(|index| index.name.node));
             }
             _ => {}
         }
@@ -328,7 +345,7 @@ impl Visit for TypeCheck<'_, '_> {
                 branches.iter().for_each(|(condition, _)| self.condition(condition));
             }
             EquationKind::For { indices, .. } => {
-                self.loops.extend(indices.iter().map(|index| index.name.node));
+                self.types.loops.extend(indices.iter().map(|index| index.name.node));
             }
             EquationKind::Equal { left, right } => self.equated(left, right),
             EquationKind::Call(call) => self.assertion(call),
@@ -345,7 +362,7 @@ impl Visit for TypeCheck<'_, '_> {
             StatementKind::While { condition, .. } => self.condition(condition),
             StatementKind::Assign { target, value } => self.assigned(target, value),
             StatementKind::For { indices, .. } => {
-                self.loops.extend(indices.iter().map(|index| index.name.node));
+                self.types.loops.extend(indices.iter().map(|index| index.name.node));
             }
             StatementKind::Call(call) => self.assertion(call),
             _ => {}

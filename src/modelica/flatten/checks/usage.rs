@@ -2,6 +2,7 @@
 //! ask for arguments of a kind (MLS §3.6.7, §3.7, §4.4.5, §12.2, §15.2).
 
 use super::scope::{Component, Scope};
+use super::types::is_number;
 use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -119,14 +120,7 @@ impl<'a> UsageCheck<'a, '_> {
 
     fn sampled(&self, start: &Expression, interval: &Expression) -> Option<Diagnostic> {
         // `sample(u, clock)` is another operator (MLS §16.5.1).
-        let is_number = match &interval.kind {
-            ExpressionKind::Real(_) | ExpressionKind::Integer(_) => true,
-            _ => {
-                let base = self.component(interval).and_then(|c| predefined(&c));
-                base.is_some_and(|base| base != Predefined::Clock)
-            }
-        };
-        if !is_number {
+        if !is_number(self.class, interval) {
             return None;
         }
         self.fixed("the start of `sample`", start)

@@ -165,11 +165,14 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<(Expression, Vec<ForIndex>), Diagnostic> {
-        let (indices, inner) = self.iterators(indices, context, local)?;
+        // The last iterator is the outer one (MLS §10.4.1).
+        let outer_first: Vec<ForIndex> = indices.iter().rev().cloned().collect();
+        let (mut indices, inner) = self.iterators(&outer_first, context, local)?;
+        indices.reverse();
         Ok((self.resolve(element, context, &inner)?, indices))
     }
 
-    /// The iterators with resolved ranges, and what their body knows.
+    /// The iterators, the outer one first, with resolved ranges, and what their body knows.
     pub fn iterators(
         &mut self,
         indices: &[ForIndex],

@@ -13,6 +13,7 @@ use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::unknown;
+use crate::inference::is_arithmetic;
 use crate::source::Span;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
@@ -380,12 +381,6 @@ impl Classes<'_> {
         let known = self.tree.component_names(self.node_of(context));
         unknown::name(&reference.name(), &known, reference.span)
     }
-}
-
-/// Whether an operator takes numbers; the sum of strings aside.
-fn is_arithmetic(operator: BinaryOperator) -> bool {
-    use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
-    matches!(operator, Add | Subtract | Multiply | Divide | Power)
 }
 
 fn is_boolean(e: &Expression) -> bool {
