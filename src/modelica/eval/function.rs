@@ -1,7 +1,7 @@
 //! A function ready to be called: inheritance resolved, names absolute. Data only.
 
 use crate::functions::Builtin;
-use crate::inference::{ElementType, Elementary};
+use crate::inference::{DeclaredSizes, ElementType, Elementary};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
@@ -60,6 +60,16 @@ impl Function {
             }
             ast::Argument::Redeclaration(_) => false,
         })
+    }
+}
+
+impl DeclaredSizes for Function {
+    fn input(&self, at: usize) -> Option<(Ident, usize)> {
+        self.inputs.get(at).map(|input| (input.name, input.dims.len()))
+    }
+
+    fn output(&self) -> Option<&[ast::Subscript]> {
+        self.outputs.first().map(|output| output.dims.as_slice())
     }
 }
 

@@ -1,18 +1,37 @@
 //! Iterators: loops' ranges, array constructors with iterators `{e for i in r}` (MLS §10.4.1) and
 //! reductions `sum(e for i in r)` (MLS §10.3.4).
 
-use super::deduction::Body;
+use super::Evaluator;
 use super::errors::MISPLACED;
-use super::{Evaluator, deduction};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::functions::{self, Meaning};
+use crate::inference::subscript_uses;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{Expression, ExpressionKind, ForIndex};
+use crate::syntax::ast::{Expression, ExpressionKind, ForIndex, Statement};
+use crate::syntax::visit::Visit;
 use crate::value::construct::{self, Range};
 use crate::value::errors::DOMAIN_ERROR;
 use crate::value::{Value, element_count};
+
+/// What a loop repeats.
+#[derive(Clone, Copy)]
+pub(super) enum Body<'b> {
+    /// Of a loop.
+    Statements(&'b [Statement]),
+    /// Of an array constructor with iterators.
+    Expression(&'b Expression),
+}
+
+impl Body<'_> {
+    fn visit(self, visitor: &mut dyn Visit) {
+        match self {
+            Body::Statements(list) => list.iter().for_each(|one| visitor.statement(one)),
+            Body::Expression(expression) => visitor.expression(expression),
+        }
+    }
+}
 
 impl Evaluator<'_> {
     /// The values that a loop variable takes.
@@ -72,7 +91,7 @@ impl Evaluator<'_> {
     /// (MLS §11.2.2.1).
     fn deduced(&mut self, index: &ForIndex, body: Body<'_>) -> Result<Range, Diagnostic> {
         let name = index.name.node;
-        let uses = deduction::subscript_uses(name, body);
+        let uses = subscript_uses(name, &|search| body.visit(search));
         let mut sizes = Vec::new();
         for found in &uses {
             let dims = match self.sizes_of(&found.array)? {

@@ -10,7 +10,6 @@ pub mod c_function;
 mod call;
 mod component;
 mod declaration;
-mod deduction;
 mod depth;
 mod endless_loop;
 pub mod errors;

@@ -1,10 +1,10 @@
 //! Statements (MLS §11.2), executed with values.
 
 use super::Evaluator;
-use super::deduction::Body;
 use super::endless_loop::endless;
 use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
 use super::function::Target;
+use super::iteration::Body;
 use crate::diag::{Diagnostic, Fault};
 use crate::execute::{
     Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets, if_statement,

@@ -4,17 +4,16 @@
 use super::balance::path;
 use super::lookup::modification::Bound;
 use crate::diag::Diagnostic;
+use crate::eval::Function;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::MemberState;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::inference::{self, Sizes, SizesOfNames};
-use crate::name::Ident;
-use crate::source::{Span, Spanned};
-use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument, Subscript,
-};
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, ForIndex};
 use crate::value::Value;
+use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
@@ -116,111 +115,18 @@ impl Instantiation<'_> {
     ) -> Option<Vec<usize>> {
         inference::element_sizes(self, element, indices).and_then(inference::all_known)
     }
-
-    fn sizes(&mut self, sizes: &[Expression]) -> Option<Vec<usize>> {
-        sizes
-            .iter()
-            .map(|size| match self.flat_value(size).ok()? {
-                Value::Integer(n) => usize::try_from(n).ok(),
-                _ => None,
-            })
-            .collect()
-    }
-
-    /// The sizes of the first output of a function, which may depend on those of its inputs; more
-    /// dimensions of an argument than of its input are those of a call for each element.
-    fn function_shape(
-        &mut self,
-        function: &crate::eval::Function,
-        arguments: &Arguments,
-    ) -> Option<Vec<usize>> {
-        let output = function.outputs.first()?;
-        let mut dims = Vec::new();
-        for (input, argument) in function.inputs.iter().zip(&arguments.positional) {
-            let given = self.shape_of(argument)?;
-            if given.len() > input.dims.len() {
-                dims = given[..given.len() - input.dims.len()].to_vec();
-                break;
-            }
-        }
-        for dim in &output.dims {
-            let Subscript::Index(size) = dim else { return None };
-            let size = self.with_arguments(function, arguments, size);
-            dims.extend(self.sizes(&[size])?);
-        }
-        Some(dims)
-    }
-
-    /// An expression of a function's inputs with `size(input, i)` and scalar inputs replaced.
-    fn with_arguments(
-        &mut self,
-        function: &crate::eval::Function,
-        arguments: &Arguments,
-        size: &Expression,
-    ) -> Expression {
-        let mut named = arguments.clone();
-        for (input, argument) in function.inputs.iter().zip(&arguments.positional) {
-            let name = Spanned { node: input.name, span: argument.span };
-            named.named.push(NamedArgument { name, value: argument.clone() });
-        }
-        self.substituted(&named, size)
-    }
-
-    fn substituted(&mut self, arguments: &Arguments, e: &Expression) -> Expression {
-        let value_of = |name: Ident| {
-            arguments.named.iter().find(|a| a.name.node == name).map(|a| a.value.clone())
-        };
-        let kind = match &e.kind {
-            ExpressionKind::Reference(reference) => {
-                let found = reference.as_ident().and_then(value_of);
-                return found.unwrap_or_else(|| e.clone());
-            }
-            ExpressionKind::Call { function, arguments: inner } => {
-                let positional: Vec<Expression> =
-                    inner.positional.iter().map(|a| self.substituted(arguments, a)).collect();
-                if function.as_ident().is_some_and(|name| name == "size")
-                    && let Some(dims) = positional.first().and_then(|array| self.shape_of(array))
-                    && let Some(Expression { kind: ExpressionKind::Integer(at), .. }) =
-                        positional.get(1)
-                    && let Some(n) = usize::try_from(at - 1).ok().and_then(|at| dims.get(at))
-                {
-                    return Expression::new(ExpressionKind::Integer(*n as i64), e.span);
-                }
-                let inner = Arguments { positional, ..(**inner).clone() };
-                ExpressionKind::Call { function: function.clone(), arguments: Box::new(inner) }
-            }
-            ExpressionKind::Binary { .. } => {
-                let (first, operations) = e.chain();
-                let first = self.substituted(arguments, first);
-                return operations.into_iter().fold(first, |left, one| {
-                    let right = self.substituted(arguments, one.right);
-                    Expression::operation(one.operator, left, right, one.whole.span)
-                });
-            }
-            ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
-                operator: *operator,
-                operand: Box::new(self.substituted(arguments, operand)),
-            },
-            other => other.clone(),
-        };
-        Expression::new(kind, e.span)
-    }
 }
 
 impl SizesOfNames for Instantiation<'_> {
+    type Function = Function;
+
     fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
         let at = *self.classes.tree.variable_of.get(&*path(reference))?;
         Some(self.classes.tree.variables[at].0.dims.iter().copied().map(Some).collect())
     }
 
-    fn of_function(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &Arguments,
-    ) -> Option<Option<Sizes>> {
-        let function = self.functions.table.get(&function.name())?.clone()?;
-        let sizes = self.function_shape(&function, arguments);
-        Some(sizes.map(|sizes| sizes.into_iter().map(Some).collect()))
+    fn function(&mut self, function: &ComponentReference) -> Option<Option<Arc<Function>>> {
+        self.functions.table.get(&function.name()).cloned().flatten().map(Some)
     }
 
     fn value(&mut self, e: &Expression) -> Option<Value> {

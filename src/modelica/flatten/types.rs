@@ -5,7 +5,7 @@ use super::balance::path;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
 use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
-use crate::eval::{FunctionComponent, ValueType};
+use crate::eval::{Function, ValueType};
 use crate::fault;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::instantiate::tree::Tree;
@@ -15,6 +15,7 @@ use crate::inference::{
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 use crate::syntax::visit::Visit;
+use std::sync::Arc;
 
 /// What the types of resolved expressions follow from: the variables and the functions that they
 /// name.
@@ -157,6 +158,7 @@ impl TypesOfNames for &Types<'_> {
             ValueType::Integer => Some(BaseType::Integer),
             ValueType::Boolean => Some(BaseType::Boolean),
             ValueType::String => Some(BaseType::String),
+            ValueType::Enumeration(definition) => Some(BaseType::Enumeration(definition.clone())),
             _ => None,
         }))
     }
@@ -169,24 +171,14 @@ impl VariabilityOfNames for &Types<'_> {
 }
 
 impl SizesOfNames for &Types<'_> {
+    type Function = Function;
+
     fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
         Some(self.named(reference)?.dims.iter().copied().map(Some).collect())
     }
 
-    /// Those of the first output, unless the function may be called element by element.
-    fn of_function(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &Arguments,
-    ) -> Option<Option<Sizes>> {
-        let user = self.functions.table.get(&function.name())?.as_ref()?;
-        let fits = |(argument, input): (&Expression, &FunctionComponent)| {
-            self.rank_of(argument) == Some(input.dims.len())
-        };
-        let all_fit = arguments.named.is_empty()
-            && arguments.iterators.is_empty()
-            && arguments.positional.iter().zip(&user.inputs).all(fits);
-        Some(user.outputs.first().filter(|_| all_fit).map(|output| vec![None; output.dims.len()]))
+    fn function(&mut self, function: &ComponentReference) -> Option<Option<Arc<Function>>> {
+        self.functions.table.get(&function.name()).cloned().flatten().map(Some)
     }
 }
 
@@ -196,10 +188,6 @@ fn fits(found: &BaseType, expected: &BaseType, e: &Expression) -> bool {
     match (found, expected) {
         (BaseType::Integer, BaseType::Real) => true,
         (BaseType::Integer, BaseType::Enumeration(_)) => may_be_literal(e),
-        // The same literals in the same order are the same type (MLS §6.4).
-        (BaseType::Enumeration(one), BaseType::Enumeration(other)) => {
-            one.literals == other.literals
-        }
         _ => found == expected,
     }
 }

@@ -6,11 +6,13 @@
 
 mod operators;
 mod sizes;
+mod subscripts;
 mod types;
 mod variability;
 
 pub(crate) use operators::{Sizes, is_arithmetic, is_relation};
-pub(crate) use sizes::{SizesOfNames, all_known, at_end, element_sizes, sizes_of};
+pub(crate) use sizes::{DeclaredSizes, SizesOfNames, all_known, at_end, element_sizes, sizes_of};
+pub(crate) use subscripts::{SubscriptUse, subscript_uses};
 pub(crate) use types::{ElementType, Elementary, TypesOfNames, chain_types, type_of};
 pub use variability::Variability;
 pub(crate) use variability::{VariabilityOfNames, most_variable};

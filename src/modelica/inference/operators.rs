@@ -1,6 +1,7 @@
 //! What operators make of the types and sizes of their operands (MLS §3.4, §10.6).
 
 use crate::syntax::ast::BinaryOperator;
+use crate::value::ops::product_sizes;
 
 /// The size of one dimension; `None` if it is not known.
 pub(super) type Size = Option<usize>;
@@ -66,15 +67,11 @@ pub(super) fn result_sizes(operator: BinaryOperator, left: Sizes, right: Sizes) 
 
 /// `*`: scaling, inner product, products with matrices (MLS §10.6.5).
 fn product(left: Sizes, right: Sizes) -> Option<Sizes> {
-    let (inner, sizes) = match (left.as_slice(), right.as_slice()) {
-        ([], _) | (_, []) => return with_every_element(left, right),
-        ([a], [b]) => (one(*a, *b), Vec::new()),
-        ([rows, a], [b]) => (one(*a, *b), vec![*rows]),
-        ([a], [b, columns]) => (one(*a, *b), vec![*columns]),
-        ([rows, a], [b, columns]) => (one(*a, *b), vec![*rows, *columns]),
-        _ => return None,
-    };
-    inner.map(|_| sizes)
+    if left.is_empty() || right.is_empty() {
+        return with_every_element(left, right);
+    }
+    let ((inner, other), sizes) = product_sizes(&left, &right)?;
+    one(inner, other).map(|_| sizes)
 }
 
 /// A scalar goes with every element.

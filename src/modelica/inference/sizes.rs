@@ -3,22 +3,31 @@
 
 use super::operators::{Size, Sizes, result_sizes};
 use crate::functions::{self, ArgumentShapes};
+use crate::name::Ident;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Subscript,
 };
 use crate::syntax::visit::{Rewrite, rewrite_expression};
 use crate::value::Value;
+use crate::value::construct::Range;
+use std::sync::Arc;
+
+/// A declared function, as far as the sizes of its first output follow from it.
+pub(crate) trait DeclaredSizes {
+    /// The name of an input at a position, and how many dimensions it has.
+    fn input(&self, at: usize) -> Option<(Ident, usize)>;
+    /// The declared sizes of the first output.
+    fn output(&self) -> Option<&[Subscript]>;
+}
 
 /// What a caller knows of names.
 pub(crate) trait SizesOfNames {
+    type Function: DeclaredSizes;
+
     /// The sizes of a variable, before the subscripts of the last part of the reference.
     fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes>;
-    /// The sizes of the first output of a declared function; `None` if none is declared.
-    fn of_function(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &Arguments,
-    ) -> Option<Option<Sizes>>;
+    /// A declared function, if its sizes are of interest; `None` if none is declared.
+    fn function(&mut self, function: &ComponentReference) -> Option<Option<Arc<Self::Function>>>;
     /// The value of an expression of constants and parameters, where a size may depend on it.
     fn value(&mut self, e: &Expression) -> Option<Value> {
         let _ = e;
@@ -87,15 +96,19 @@ pub(crate) fn sizes_of<N: SizesOfNames>(names: &mut N, e: &Expression) -> Option
     }
 }
 
-/// The length of a range such as `1:3`.
+/// The length of a range such as `1:3` or `0:0.1:1`.
 fn length_in_literals(range: &Expression) -> Option<usize> {
-    let ExpressionKind::Range { start, step: None, stop } = &range.kind else { return None };
-    match (&start.kind, &stop.kind) {
-        (ExpressionKind::Integer(first), ExpressionKind::Integer(last)) => {
-            usize::try_from(last.checked_sub(*first)?.checked_add(1)?.max(0)).ok()
-        }
+    let ExpressionKind::Range { start, step, stop } = &range.kind else { return None };
+    let literal = |e: &Expression| match e.kind {
+        ExpressionKind::Integer(number) => Some(Value::Integer(number)),
+        ExpressionKind::Real(number) => Some(Value::Real(number)),
         _ => None,
-    }
+    };
+    let step = match step {
+        Some(step) => Some(literal(step)?),
+        None => None,
+    };
+    Range::new(&literal(start)?, step.as_ref(), &literal(stop)?).ok().map(|range| range.count())
 }
 
 /// The sizes of the value, where it is known.
@@ -250,8 +263,8 @@ fn of_call<N: SizesOfNames>(
         let element = element_sizes(names, arguments.positional.first()?, &arguments.iterators);
         return element.is_none_or(|sizes| sizes.is_empty()).then(Vec::new);
     }
-    if let Some(declared) = names.of_function(function, arguments) {
-        return declared;
+    if let Some(declared) = names.function(function) {
+        return of_declared(names, &*declared?, arguments);
     }
     let entry = functions::find(function.as_ident()?.as_str())?;
     let mut given = Given { names, arguments: &arguments.positional, open: false, ones: false };
@@ -261,6 +274,80 @@ fn of_call<N: SizesOfNames>(
     }
     given.ones = true;
     entry.shape_of(&mut given).map(|sizes| vec![None; sizes.len()])
+}
+
+/// The sizes of the first output of a declared function; more dimensions of an argument than its
+/// input has are those of a call for each element (MLS §12.4.6).
+fn of_declared<N: SizesOfNames>(
+    names: &mut N,
+    function: &N::Function,
+    arguments: &Arguments,
+) -> Option<Sizes> {
+    let inputs = (0..).map_while(|at| function.input(at)).collect::<Vec<_>>();
+    let mut given: Vec<_> = inputs.iter().copied().zip(&arguments.positional).collect();
+    for argument in &arguments.named {
+        let input = inputs.iter().find(|(name, _)| *name == argument.name.node);
+        given.extend(input.map(|input| (*input, &argument.value)));
+    }
+    let mut outer = None;
+    for ((_, rank), argument) in &given {
+        let sizes = sizes_of(names, argument)?;
+        let surplus = sizes.len().checked_sub(*rank)?;
+        if surplus > 0 && outer.is_none() {
+            outer = Some(sizes[..surplus].to_vec());
+        }
+    }
+    let mut sizes = outer.unwrap_or_default();
+    for size in function.output()? {
+        sizes.push(match size {
+            Subscript::All(_) => None,
+            Subscript::Index(size) => {
+                let mut size = size.clone();
+                GivenInputs { names, given: &given }.expression(&mut size);
+                integer(names, &size).and_then(|size| usize::try_from(size).ok())
+            }
+        });
+    }
+    Some(sizes)
+}
+
+/// Writes the arguments for the inputs of a function, and numbers for their sizes.
+struct GivenInputs<'n, 'a, N> {
+    names: &'n mut N,
+    given: &'a [((Ident, usize), &'a Expression)],
+}
+
+impl<N: SizesOfNames> Rewrite for GivenInputs<'_, '_, N> {
+    fn expression(&mut self, e: &mut Expression) {
+        if let ExpressionKind::Reference(reference) = &e.kind
+            && let Some(name) = reference.as_ident()
+            && let Some((_, value)) = self.given.iter().find(|((input, _), _)| *input == name)
+        {
+            *e = (*value).clone();
+            return;
+        }
+        rewrite_expression(self, e);
+        if let ExpressionKind::Call { function, arguments } = &e.kind
+            && function.as_ident().is_some_and(|name| name == "size")
+            && let [array, at] = arguments.positional.as_slice()
+            && let ExpressionKind::Integer(at) = at.kind
+            && let Some(sizes) = sizes_of(self.names, array)
+            && let Some(Some(size)) = usize::try_from(at - 1).ok().and_then(|at| sizes.get(at))
+        {
+            e.kind = ExpressionKind::Integer(*size as i64);
+        }
+    }
+}
+
+/// The value of an expression that is an Integer, where it is known.
+fn integer<N: SizesOfNames>(names: &mut N, e: &Expression) -> Option<i64> {
+    match e.kind {
+        ExpressionKind::Integer(number) => Some(number),
+        _ => match names.value(e)? {
+            Value::Integer(number) => Some(number),
+            _ => None,
+        },
+    }
 }
 
 /// The sizes of arguments.
@@ -286,14 +373,7 @@ impl<N: SizesOfNames> ArgumentShapes for Given<'_, '_, N> {
     }
 
     fn number(&mut self, at: usize) -> Option<i64> {
-        let argument = self.arguments.get(at)?;
-        match argument.kind {
-            ExpressionKind::Integer(number) => Some(number),
-            _ => match self.names.value(argument)? {
-                Value::Integer(number) => Some(number),
-                _ => None,
-            },
-        }
+        integer(self.names, self.arguments.get(at)?)
     }
 
     fn size(&mut self, at: usize) -> Option<i64> {

@@ -1,5 +1,6 @@
 //! Rules that classes keep or break by their text: what is refused, and what is not.
 
+use crate::support::simulated::simulated;
 use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::{Access, Program};
 use gapilib::internals::flatten::{Library, check, flatten};
@@ -519,4 +520,47 @@ fn operators_by_element_take_numbers_too() {
     for operator in ["+", ".+", "-", ".-", "*", ".*", "/", "./", "^", ".^"] {
         refused(&format!("model M Real x = true {operator} 1; end M;"), "type-mismatch");
     }
+}
+
+/// The value of a function has the type of its output, which may be an enumeration.
+#[test]
+fn the_values_of_functions_have_types() {
+    let model = |declaration: &str| {
+        format!(
+            "model M type E = enumeration(a, b); type F = enumeration(c);
+            function f input Real u; output E y; algorithm y := if u > 1 then E.a else E.b; end f;
+            {declaration}; end M;"
+        )
+    };
+    accepted(&model("parameter E e = f(2)"));
+    for wrong in ["Real x = f(2)", "Integer n = f(2)", "F e = f(2)"] {
+        refused(&model(&format!("parameter {wrong}")), "type-mismatch");
+    }
+}
+
+/// A range has as many numbers in models as in scripts (MLS §10.4.3), and iterators the same order.
+#[test]
+fn ranges_of_models_are_those_of_scripts() {
+    let text = "model A parameter Integer j = 10; Real x[3, 2] = {i for i in j:j + 1, j in 1:3};
+        Real y[4] = 100:0.1:100.3; end A; model M A a; end M;";
+    let run = simulated(text, 1.0);
+    for row in 1..=3 {
+        for column in 1..=2 {
+            let expected = f64::from(row + column - 1);
+            assert_eq!(run.last(&format!("a.x[{row},{column}]")), expected);
+        }
+    }
+    assert_eq!(run.last("a.y[4]"), 100.3);
+}
+
+/// Sizes follow the arguments, given by position or by name, and calls for each element.
+#[test]
+fn sizes_of_calls_follow_their_arguments() {
+    let text = "function f input Real u[:]; input Integer n; output Real y[n];
+        algorithm y := fill(sum(u), n); end f;
+        model M Real y[2]; Real z[3, 2]; parameter Integer n[2] = size(f(fill(1, 3, 4), n = 5));
+        equation y = f({time, 1}, n = 2); z = f({{time, 1}, {1, 2}, {3, 4}}, n = 2); end M;";
+    let run = simulated(text, 1.0);
+    assert_eq!([run.last("y[2]"), run.last("z[3,1]")], [2.0, 7.0]);
+    assert_eq!([run.last("n[1]"), run.last("n[2]")], [3.0, 5.0]);
 }

@@ -10,15 +10,17 @@ pub use local::LocalBalance;
 use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
 use super::{FlatModel, Variability};
 use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
 use crate::inference::{self, Sizes, SizesOfNames};
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, CausalityPrefix, ComponentReference, Equation, EquationKind, Expression,
-    ExpressionKind, targets,
+    CausalityPrefix, ComponentReference, Equation, EquationKind, Expression, ExpressionKind,
+    targets,
 };
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The most classes that one message names.
 const MAX_CLASSES: usize = 3;
@@ -27,7 +29,7 @@ const MAX_CLASSES: usize = 3;
 /// model is left to the matching of equations and unknowns.
 pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
     let unknowns = unknowns(model);
-    let Some(equations) = equations(model, &mut |e| dims(e, model)) else { return Ok(()) };
+    let Some(equations) = equations(model) else { return Ok(()) };
     if equations == unknowns || equations + idle_inputs::idle_inputs(model) == unknowns {
         return Ok(());
     }
@@ -49,10 +51,7 @@ pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnost
 
 /// Whether the numbers are the same, as far as the text of all equations shows it.
 pub(super) fn is_balanced(model: &FlatModel) -> Option<bool> {
-    let mut sizes = SizesIn(model);
-    let equations = equations(model, &mut |e| {
-        inference::sizes_of(&mut sizes, e).and_then(inference::all_known)
-    })?;
+    let equations = equations(model)?;
     let unknowns = unknowns(model);
     Some(equations == unknowns || equations + idle_inputs::idle_inputs(model) == unknowns)
 }
@@ -70,49 +69,42 @@ fn is_unknown(variable: &super::Variable) -> bool {
 
 /// Number of scalar equations, bindings and assigned variables; `None` where the size of one does not
 /// follow from its text, and in a model with states, which determine one variable in turn.
-fn equations(
-    model: &FlatModel,
-    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
-) -> Option<usize> {
+fn equations(model: &FlatModel) -> Option<usize> {
     if model.parts.iter().any(|part| !part.outputs.is_empty()) {
         return None;
     }
     let bound = model.variables.values().filter(|own| is_unknown(own) && own.binding.is_some());
     let mut equations: usize = bound.map(super::Variable::len).sum();
+    let mut sizes = SizesIn(model);
+    let mut dims =
+        |e: &Expression| inference::sizes_of(&mut sizes, e).and_then(inference::all_known);
     for equation in &model.equations {
-        equations += size(equation, dims)?;
+        equations += size(equation, &mut dims)?;
     }
     let assigned = model.algorithms.iter().flat_map(|statements| targets(statements));
     Some(equations + scalars_of(assigned, model))
 }
 
+/// The sizes of an expression, where all of them are known.
+type Dims<'d> = dyn FnMut(&Expression) -> Option<Vec<usize>> + 'd;
+
 /// The sizes of variables of a flat model.
 struct SizesIn<'m>(&'m FlatModel);
 
 impl SizesOfNames for SizesIn<'_> {
+    type Function = Function;
+
     fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
         let variable = self.0.variables.get(&*path(reference))?;
         Some(variable.dims.iter().copied().map(Some).collect())
     }
 
-    /// Scalars, of functions that are not called element by element.
-    fn of_function(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &Arguments,
-    ) -> Option<Option<Sizes>> {
-        let user = self.0.functions.get(&function.name())?;
-        let named = arguments.named.iter().map(|own| (own.name.node, &own.value));
-        let inputs = user.inputs.iter().map(|input| input.name);
-        let given = inputs.zip(&arguments.positional).chain(named);
-        let mut fit = given.map(|(name, value)| {
-            let input = user.inputs.iter().find(|input| input.name == name)?;
-            let sizes = inference::sizes_of(self, value)?;
-            (sizes.len() == input.dims.len()).then_some(())
-        });
-        let all_fit = fit.all(|one| one.is_some());
-        let first = user.outputs.first().filter(|output| all_fit && output.dims.is_empty());
-        Some(first.map(|_| Vec::new()))
+    /// A record is not the number of scalars that its sizes say.
+    fn function(&mut self, function: &ComponentReference) -> Option<Option<Arc<Function>>> {
+        let found = self.0.functions.get(&function.name())?;
+        let is_record =
+            |output: &FunctionComponent| matches!(output.value_type, ValueType::Record(..));
+        Some((!found.outputs.first().is_some_and(is_record)).then(|| found.clone()))
     }
 }
 
@@ -145,10 +137,7 @@ fn plural(count: usize, noun: &str) -> String {
 }
 
 /// Number of scalar equations; `None` if it does not follow from its text.
-fn size(
-    equation: &Equation,
-    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
-) -> Option<usize> {
+fn size(equation: &Equation, dims: &mut Dims<'_>) -> Option<usize> {
     match &equation.kind {
         EquationKind::Equal { left, right } => match &left.kind {
             ExpressionKind::Tuple(outputs) => {
@@ -167,58 +156,13 @@ fn size(
 }
 
 /// Number of scalars of an output: a variable, or a record, whose constructor lists its components.
-fn scalars(
-    output: &Expression,
-    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
-) -> Option<usize> {
+fn scalars(output: &Expression, dims: &mut Dims<'_>) -> Option<usize> {
     match &output.kind {
         ExpressionKind::Call { arguments, .. } if !arguments.named.is_empty() => {
             arguments.named.iter().map(|component| scalars(&component.value, dims)).sum()
         }
         _ => Some(dims(output)?.iter().product()),
     }
-}
-
-/// The sizes of an expression where its text shows them.
-fn dims(e: &Expression, model: &FlatModel) -> Option<Vec<usize>> {
-    match &e.kind {
-        ExpressionKind::Real(_) | ExpressionKind::Integer(_) | ExpressionKind::Boolean(_) => {
-            Some(Vec::new())
-        }
-        ExpressionKind::Reference(reference) => reference_dims(reference, model),
-        ExpressionKind::Call { function, arguments } if function.as_ident()? == "der" => {
-            dims(arguments.positional.first()?, model)
-        }
-        ExpressionKind::Unary { operand, .. } => dims(operand, model),
-        ExpressionKind::Array(elements) => {
-            let mut sizes = dims(elements.first()?, model)?;
-            sizes.insert(0, elements.len());
-            Some(sizes)
-        }
-        _ => None,
-    }
-}
-
-fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<Vec<usize>> {
-    if reference.as_ident().is_some_and(|name| name == "time") {
-        return Some(Vec::new());
-    }
-    let last = reference.parts.last()?;
-    let variable = model.variables.get(&*path(reference))?;
-    if last.subscripts.is_empty() {
-        return Some(variable.dims.clone());
-    }
-    let scalar = last.subscripts.iter().all(|subscript| {
-        matches!(
-            subscript,
-            crate::syntax::ast::Subscript::Index(Expression {
-                kind: ExpressionKind::Integer(_),
-                ..
-            })
-        )
-    });
-    let all = last.subscripts.len() == variable.dims.len();
-    (scalar && all).then(Vec::new)
 }
 
 /// The name of the variable that a flat reference names, without the last subscripts.

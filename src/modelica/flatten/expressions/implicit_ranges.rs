@@ -8,19 +8,13 @@ use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::{Declaration, MemberState, NodeKind};
 use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::inference::{SubscriptUse, subscript_uses};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Statement,
-    StatementKind, Subscript,
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+    Subscript,
 };
-use crate::syntax::visit::{Visit, walk_reference, walk_statement};
-
-/// Where a loop variable is a subscript: the array without this and later subscripts, and the
-/// dimension, from 0.
-struct Use {
-    array: ComponentReference,
-    dimension: usize,
-}
+use crate::syntax::visit::{Visit, walk_statement};
 
 /// What a subscript of one dimension of an array runs over.
 #[derive(PartialEq)]
@@ -29,33 +23,6 @@ enum Extent {
     Size(usize),
     /// The values of Boolean.
     Booleans,
-}
-
-/// Finds the uses of a loop variable as a subscript.
-struct Uses {
-    name: Ident,
-    found: Vec<Use>,
-}
-
-impl Visit for Uses {
-    fn reference(&mut self, reference: &ComponentReference) {
-        for (at, part) in reference.parts.iter().enumerate() {
-            for (dimension, subscript) in part.subscripts.iter().enumerate() {
-                let Subscript::Index(Expression { kind: ExpressionKind::Reference(index), .. }) =
-                    subscript
-                else {
-                    continue;
-                };
-                if index.as_ident() == Some(self.name) {
-                    let mut parts: Vec<ReferencePart> = reference.parts[..=at].to_vec();
-                    parts[at].subscripts.clear();
-                    let array = ComponentReference { parts, ..reference.clone() };
-                    self.found.push(Use { array, dimension });
-                }
-            }
-        }
-        walk_reference(self, reference);
-    }
 }
 
 /// Finds the arrays that are assigned as a whole.
@@ -86,11 +53,12 @@ impl Instantiation<'_> {
         context: ScopeId,
     ) -> Result<(), Diagnostic> {
         for index in indices.iter().filter(|index| index.range.is_none()) {
-            let mut uses = Uses { name: index.name.node, found: Vec::new() };
             let mut assigned = Assigned::default();
-            body.iter().for_each(|statement| uses.statement(statement));
+            let uses = subscript_uses(index.name.node, &|search| {
+                body.iter().for_each(|statement| search.statement(statement));
+            });
             body.iter().for_each(|statement| assigned.statement(statement));
-            for array in uses.found.iter().filter_map(|one| one.array.as_ident()) {
+            for array in uses.iter().filter_map(|one| one.array.as_ident()) {
                 let elements = self.classes.elements(context)?;
                 let declared = elements.get(array);
                 let is_open = |one: &Declaration| {
@@ -121,9 +89,8 @@ impl Instantiation<'_> {
         for index in indices {
             let mut index = index.clone();
             if index.range.is_none() {
-                let mut uses = Uses { name: index.name.node, found: Vec::new() };
-                visit(&mut uses);
-                index.range = Some(self.deduced(&index, &uses.found, context, local)?);
+                let uses = subscript_uses(index.name.node, visit);
+                index.range = Some(self.deduced(&index, &uses, context, local)?);
             }
             all.push(index);
         }
@@ -133,7 +100,7 @@ impl Instantiation<'_> {
     fn deduced(
         &mut self,
         index: &ForIndex,
-        uses: &[Use],
+        uses: &[SubscriptUse],
         context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
@@ -185,7 +152,7 @@ impl Instantiation<'_> {
     /// The extent of one dimension of an array of variables or components.
     fn extent_of_array(
         &mut self,
-        one: &Use,
+        one: &SubscriptUse,
         context: ScopeId,
     ) -> Result<Option<Extent>, Diagnostic> {
         let mut node = self.classes.node_of(context);

@@ -13,6 +13,8 @@ use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Subscript, UnaryOperator,
 };
+use crate::value::Value;
+use crate::value::construct::Range;
 
 impl<T: Target> Lowering<'_, T> {
     /// Any expression.
@@ -274,15 +276,16 @@ impl<T: Target> Lowering<'_, T> {
         let start = self.shaping(start)?;
         let step = step.map_or(Ok(1.0), |step| self.shaping(step))?;
         let stop = self.shaping(stop)?;
-        let count = ((stop - start) / step * (1.0 + f64::EPSILON)).floor() + 1.0;
-        if step == 0.0 || !count.is_finite() || count > MAX_SCALARS as f64 {
-            return Err(fault!(
-                ARRAY_MISMATCH,
-                "the range {start}:{step}:{stop} never reaches its end"
-            )
-            .at(span));
+        let [first, by, last] = [start, step, stop].map(Value::Real);
+        match Range::new(&first, Some(&by), &last) {
+            Ok(range) if range.count() <= MAX_SCALARS => {
+                Ok((0..range.count()).filter_map(|at| range.get(at).as_real()).collect())
+            }
+            _ => {
+                Err(fault!(ARRAY_MISMATCH, "the range {start}:{step}:{stop} never reaches its end")
+                    .at(span))
+            }
         }
-        Ok((0..count.max(0.0) as usize).map(|i| start + i as f64 * step).collect())
     }
 
     fn array_iteration(

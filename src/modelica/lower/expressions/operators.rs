@@ -9,6 +9,7 @@ use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{BinaryOperator, Expression};
 use crate::value::check_length;
+use crate::value::ops::product_sizes;
 use std::sync::Arc;
 
 /// The greatest exponent of a matrix.
@@ -250,14 +251,15 @@ impl<T: Target> Lowering<'_, T> {
         b: Array<T::Scalar>,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
-        let (rows, inner, columns, dims) = match (a.dims.as_slice(), b.dims.as_slice()) {
-            ([], _) | (_, []) => return self.elementwise(Binary::Mul, a, b, span),
-            (&[n], &[m]) if n == m => (1, n, 1, vec![]),
-            (&[r, n], &[m]) if n == m => (r, n, 1, vec![r]),
-            (&[n], &[m, c]) if n == m => (1, n, c, vec![c]),
-            (&[r, n], &[m, c]) if n == m => (r, n, c, vec![r, c]),
-            _ => return Err(size_fault(&a.dims, &b.dims).at(span)),
+        if a.dims.is_empty() || b.dims.is_empty() {
+            return self.elementwise(Binary::Mul, a, b, span);
+        }
+        let sizes = product_sizes(&a.dims, &b.dims).filter(|((inner, other), _)| inner == other);
+        let Some(((inner, _), dims)) = sizes else {
+            return Err(size_fault(&a.dims, &b.dims).at(span));
         };
+        let rows: usize = a.dims[..a.dims.len() - 1].iter().product();
+        let columns: usize = b.dims[1..].iter().product();
         let mut elements = Vec::with_capacity(rows * columns);
         for row in 0..rows {
             for column in 0..columns {

@@ -10,23 +10,29 @@ use crate::value::{ArrayValue, Elements, Value};
 use crate::{bail, fault};
 use nalgebra::DMatrixView;
 
+/// The sizes of `a * b` (MLS §10.6.4): the two that must be the same, and those of the product;
+/// `None` if arrays of so many dimensions have no product.
+pub(crate) fn product_sizes<S: Copy>(a: &[S], b: &[S]) -> Option<((S, S), Vec<S>)> {
+    let (rows, inner) = match a {
+        [n] => (None, *n),
+        [m, n] => (Some(*m), *n),
+        _ => return None,
+    };
+    let (other, columns) = match b {
+        [n] => (*n, None),
+        [n, p] => (*n, Some(*p)),
+        _ => return None,
+    };
+    Some(((inner, other), rows.into_iter().chain(columns).collect()))
+}
+
 /// `a * b`: vector · vector is a scalar, matrix · vector and vector · matrix are vectors,
 /// matrix · matrix is a matrix.
 pub fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
-    let (rows, inner, dims_left) = match a.dims.as_slice() {
-        [n] => (1, *n, vec![]),
-        [m, n] => (*m, *n, vec![*m]),
-        _ => return Err(no_product(a, b)),
-    };
-    let (inner_right, columns, dims_right) = match b.dims.as_slice() {
-        [n] => (*n, 1, vec![]),
-        [n, p] => (*n, *p, vec![*p]),
-        _ => return Err(no_product(a, b)),
-    };
-    if inner != inner_right {
-        return Err(no_product(a, b));
-    }
-    let dims = [dims_left, dims_right].concat();
+    let sizes = product_sizes(&a.dims, &b.dims).filter(|((inner, other), _)| inner == other);
+    let ((inner, _), dims) = sizes.ok_or_else(|| no_product(a, b))?;
+    let rows = a.dims[..a.dims.len() - 1].iter().product();
+    let columns = b.dims[1..].iter().product();
     element_count(&dims)?;
     let elements = match (&a.elements, &b.elements) {
         (Elements::Integer(a), Elements::Integer(b)) => {

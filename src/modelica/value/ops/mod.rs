@@ -15,6 +15,7 @@ pub(crate) use elementwise::{
     elementwise_add, elementwise_divide, elementwise_multiply, elementwise_power,
     elementwise_subtract,
 };
+pub(crate) use matrix::product_sizes;
 pub use relation::{and, equal, less, not, or, order};
 pub(crate) use relation::{greater, greater_equal, less_equal, not_equal};
 
