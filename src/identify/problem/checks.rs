@@ -8,11 +8,13 @@
 use super::statistics::distributions::{
     chi_square_tails, f_upper, signs_two_sided, student_two_sided,
 };
+use super::statistics::freedom::Directions;
 use super::statistics::outliers::{outliers, rest_of};
 use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
 use super::statistics::resolution::resolution;
 use super::{
-    ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
+    ErrorModel, Finding, FindingKind, Problem, ResidualTest, Series, Severity, Sigma, Statistics,
+    residual_test,
 };
 use crate::diag::suggest;
 use crate::elementary;
@@ -100,7 +102,10 @@ pub(crate) fn residual_findings(
             .map(|(&j, r)| r / statistics.weights[j])
             .collect();
         if !resolved && rms(&raw) <= FROM_THE_SOLVER * problem.noise * size {
-            findings.push(no_noise(own));
+            findings.push(match is_followed(statistics, own) {
+                true => passed_through(own),
+                false => no_noise(own),
+            });
             suspects.retain(|j| !own.points.contains(j));
             continue;
         }
@@ -191,6 +196,27 @@ fn cosine(a: &[f64], b: &[f64]) -> f64 {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let size = (product(a, a) * product(b, b)).sqrt();
     if size > 0.0 { product(a, b) / size } else { 0.0 }
+}
+
+/// Whether parameters, scales and offsets follow a series wherever its points are.
+fn is_followed(statistics: &Statistics, own: &Own<'_>) -> bool {
+    let columns = statistics.explicit_columns().map(|own| own.0);
+    let columns = columns.unwrap_or_else(|| statistics.weighted(&statistics.jacobian));
+    let directions = Directions::of(statistics.residuals.len(), &columns);
+    directions.is_some_and(|directions| directions.follow(&own.points))
+}
+
+fn passed_through(own: &Own<'_>) -> Finding {
+    let (count, them) = match own.points.len() {
+        1 => ("The only point".to_owned(), "it"),
+        count => (format!("All {count} points"), "them"),
+    };
+    let sentence = format!(
+        "{count} of {} would be fitted exactly with any value: as many parameters, scales or offsets \
+         act on {them} alone. They say nothing about the other parameters.",
+        own.label
+    );
+    Finding::new(FindingKind::Missing, sentence).series(&own.label)
 }
 
 fn no_noise(own: &Own<'_>) -> Finding {
@@ -600,9 +626,29 @@ fn pairs(problem: &Problem) -> Vec<(usize, usize)> {
     all.filter(is_pair).collect()
 }
 
+/// What counts errors together that two series have in common; nothing where that is not supported.
+fn remedy_of_common_errors(problem: &Problem, pair: [usize; 2]) -> &'static str {
+    let [a, b] = pair.map(|k| &problem.series[k]);
+    let is_replicated = |own: &Series| {
+        problem.series.iter().filter(|other| other.label() == own.label()).count() > 1
+    };
+    let is_plain = |own: &Series| {
+        let is_formula = matches!(own.sigma, Sigma::Formula(_) | Sigma::Variable(_));
+        own.is_normal() && own.joint.is_none() && own.weight == 1.0 && !is_formula
+    };
+    match () {
+        () if a.label() == b.label() => {
+            " Give the mean of the replicates as one column, with the standard deviation of the mean."
+        }
+        () if is_replicated(a) || is_replicated(b) || !is_plain(a) || !is_plain(b) => "",
+        () => " The entry `covariance = \"estimate\"` of the experiment counts them together.",
+    }
+}
+
 /// Errors that two outputs have in common.
 fn common_errors(problem: &Problem, all: &[Own<'_>], alpha: f64) -> Vec<Finding> {
     let one = |(a, b): (usize, usize)| {
+        let remedy = remedy_of_common_errors(problem, [a, b]);
         let (a, b) = (&all[a], &all[b]);
         let centred = |own: &Own<'_>| -> Vec<f64> {
             let mean = mean(&own.residuals);
@@ -612,12 +658,13 @@ fn common_errors(problem: &Problem, all: &[Own<'_>], alpha: f64) -> Vec<Finding>
         let freedom = a.residuals.len() as f64 - 2.0;
         let t = correlation * (freedom / (1.0 - correlation * correlation)).sqrt();
         let p = student_two_sided(t, freedom);
+        let (who, what) = match a.label == b.label {
+            true => (format!("two replicates of {}", a.label), "replicates"),
+            false => (format!("{} and {}", a.label, b.label), "outputs"),
+        };
         let sentence = format!(
-            "The residuals of {} and {} are correlated ({}): the two outputs have errors in common, \
-             but count as independent, so that standard errors are too small. The entry \
-             `covariance = \"estimate\"` of the experiment counts them together.",
-            a.label,
-            b.label,
+            "The residuals of {who} are correlated ({}): the two {what} have errors in common, but \
+             count as independent, so that standard errors are too small.{remedy}",
             significant(correlation, 2)
         );
         (p < alpha).then(|| {

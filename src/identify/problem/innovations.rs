@@ -106,7 +106,7 @@ impl SolvedSeries {
     fn whiteness(&self) -> Option<Finding> {
         let periodogram = Periodogram::of(&self.innovations())?;
         let (place, difference) = periodogram.farthest();
-        let label = label(self);
+        let label = self.label();
         let is_white = difference.abs() <= periodogram.band;
         let duration = self.points.iter().map(|point| point[0]);
         let (low, high) =
@@ -185,7 +185,7 @@ impl Solution {
                 });
                 format!(
                     "{}: {}{unit} (predictions: {}{unit}{})",
-                    label(own),
+                    own.label(),
                     significant(simulated, 3),
                     significant(own.rmse, 3),
                     ahead.unwrap_or_default()
@@ -201,13 +201,6 @@ impl Solution {
             let finding = Finding::new(FindingKind::ProcessNoise, sentence);
             self.findings.push(finding.severity(Severity::Information));
         }
-    }
-}
-
-fn label(series: &SolvedSeries) -> String {
-    match series.experiment.is_empty() {
-        true => series.y[0].clone(),
-        false => format!("{} / {}", series.experiment, series.y[0]),
     }
 }
 

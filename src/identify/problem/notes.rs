@@ -6,12 +6,13 @@ use super::verdict_notes::about_parameter;
 use super::verdicts::Judged;
 use super::{
     ErrorModel, FailureRegion, Finding, FindingKind, Form, NonIdentifiable, OtherMinimum, Run,
-    Severity, Solution, SolvedSeries, Statistics,
+    Severity, Sigma, Solution, SolvedSeries, Statistics,
 };
 use crate::diag::suggest;
 use crate::elementary;
 use crate::table::{digits_of, ends, significant};
 use crate::uncertainty_given;
+use indexmap::IndexMap;
 
 /// Beyond this condition number digits of the sensitivities are lost.
 const ILL_CONDITIONED: f64 = 1e4;
@@ -22,6 +23,11 @@ const SMALL_CHANGE: f64 = 1e-3;
 /// A point that is alone in its series dominates a parameter whose standard error is so many times
 /// as large without it.
 const DOMINANT: f64 = 3.0;
+/// Estimated standard deviations that are listed, and outputs of each.
+const SIGMAS: usize = 20;
+const OUTPUTS: usize = 3;
+/// Rows that are listed.
+const LISTED: usize = 10;
 /// Held-out data of the same kind have ratios of the errors up to this by chance and by the
 /// parameters' own errors; beyond ten the model is said not to hold.
 const RATIOS: [f64; 2] = [1.5, 10.0];
@@ -206,23 +212,43 @@ fn estimated(run: &Run, solution: &Solution) -> Option<Finding> {
     if solution.likelihood.error_model != ErrorModel::Estimated {
         return None;
     }
-    let is_joint = solution.series.windows(2).any(|pair| pair[0].experiment != pair[1].experiment);
-    let own = |series: &SolvedSeries| {
-        let sigma = series.sigma.filter(|_| series.sigma_estimated)?;
-        let of = if is_joint { format!("{} / ", series.experiment) } else { String::new() };
-        Some(format!("{of}{} {} {}", series.y[0], significant(sigma, 4), series.y[1]))
+    // By the name of the estimate, which outputs share.
+    let mut sigmas: IndexMap<String, Vec<&str>> = IndexMap::new();
+    let data = run.problem.series.iter().filter(|series| series.is_data());
+    for (series, solved) in data.zip(&solution.series) {
+        let (Some(sigma), Some(name)) = (solved.sigma, series.deviation()) else { continue };
+        let size = format!("{} {}", significant(sigma, 4), series.y_unit);
+        let (name, of) = match series.sigma {
+            Sigma::Shared(_) if series.joint.is_none() => (name, series.y_name.as_str()),
+            _ => (series.y_name.as_str(), ""),
+        };
+        let outputs = sigmas.entry(format!("{name} {}", size.trim_end())).or_default();
+        if !of.is_empty() && !outputs.contains(&of) {
+            outputs.push(of);
+        }
+    }
+    let one = |(sigma, outputs): (&String, &Vec<&str>)| match abridged(outputs, OUTPUTS) {
+        of if of.is_empty() => sigma.clone(),
+        of => format!("{sigma} ({of})"),
     };
-    let mut sigmas: Vec<String> = solution.series.iter().filter_map(own).collect();
-    sigmas.dedup();
+    let all: Vec<String> = sigmas.iter().map(one).collect();
     let what = match run.problem.is_normal() {
         true => "Standard deviations",
         false => "Scales of the errors",
     };
-    let sentence = format!(
-        "{what} estimated with the parameters: {}.",
-        sigmas.iter().map(|text| text.trim()).collect::<Vec<_>>().join(", ")
-    );
+    let source = if all.len() > SIGMAS { ": all are in `result.json`" } else { "" };
+    let sentence =
+        format!("{what} estimated with the parameters: {}{source}.", abridged(&all, SIGMAS));
     Some(Finding::new(FindingKind::ErrorModel, sentence).severity(Severity::Information))
+}
+
+/// The first of these, and how many there are more.
+fn abridged<T: AsRef<str>>(all: &[T], most: usize) -> String {
+    let shown: Vec<&str> = all.iter().take(most).map(AsRef::as_ref).collect();
+    match all.len().checked_sub(most).filter(|more| *more > 0) {
+        Some(more) => format!("{} and {more} more", shown.join(", ")),
+        None => shown.join(", "),
+    }
 }
 
 /// A series that the model follows with a negative scale only.
@@ -278,11 +304,10 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
         if series.x.len() != 1 || is_prior || statistics.freedom < 1.0 {
             continue;
         }
-        let column = |column: &Vec<f64>| {
-            let pairs = column.iter().zip(&statistics.weights).enumerate();
-            pairs.filter(|(j, _)| *j != place).map(|(_, (d, w))| d * w).collect::<Vec<f64>>()
-        };
-        let rest: Vec<Vec<f64>> = statistics.jacobian.iter().map(column).collect();
+        let mut rest = statistics.weighted(&statistics.jacobian);
+        for column in &mut rest {
+            column.remove(place);
+        }
         let Some(without) = uncertainty_given(&rest, statistics.variance) else { continue };
         for (k, free) in run.problem.parameters.iter().enumerate() {
             let ratio = without.standard_deviations[k] / all.standard_deviations[k];
@@ -375,26 +400,35 @@ fn about_validation(own: &SolvedSeries, solution: &Solution) -> Finding {
 }
 
 fn about_missing(run: &Run) -> Vec<Finding> {
-    let one = |series: &super::Series| {
-        let n = series.missing.len();
-        let rows: Vec<String> = series.missing.iter().take(10).map(usize::to_string).collect();
+    // Replicates are one output.
+    let mut outputs: IndexMap<String, (usize, Vec<usize>, usize)> = IndexMap::new();
+    for series in &run.problem.series {
+        let own = outputs.entry(series.label()).or_default();
+        own.0 += series.missing.len();
+        own.1.extend(&series.missing);
+        own.2 += series.x.len();
+    }
+    let one = |(label, (n, mut rows, used)): (String, (usize, Vec<usize>, usize))| {
+        rows.sort_unstable();
+        rows.dedup();
+        let listed: Vec<String> = rows.iter().take(LISTED).map(usize::to_string).collect();
         let sentence = format!(
-            "{} of {} {} no number and {} left out (row{} {}{}); {} points are used.",
+            "{} of {label} {} no number and {} left out (row{} {}{}); {} {} used.",
             suggest::counted(n as u64, "point"),
-            series.label(),
             if n == 1 { "has" } else { "have" },
             if n == 1 { "is" } else { "are" },
-            if n == 1 { "" } else { "s" },
-            rows.join(", "),
-            if n > rows.len() { ", ..." } else { "" },
-            series.x.len()
+            if rows.len() == 1 { "" } else { "s" },
+            listed.join(", "),
+            if rows.len() > listed.len() { ", ..." } else { "" },
+            suggest::counted(used as u64, "point"),
+            if used == 1 { "is" } else { "are" },
         );
         Finding::new(FindingKind::MissingPoints, sentence)
             .severity(Severity::Information)
-            .series(series.label())
-            .rows(series.missing.clone())
+            .series(label)
+            .rows(rows)
     };
-    run.problem.series.iter().filter(|series| !series.missing.is_empty()).map(one).collect()
+    outputs.into_iter().filter(|(_, (n, ..))| *n > 0).map(one).collect()
 }
 
 fn non_identifiable<'a>(group: &NonIdentifiable, name: &impl Fn(usize) -> &'a str) -> String {

@@ -5,7 +5,9 @@
 //! limit, which tells of the range and not of the parameter: nothing is said but that the range may be
 //! too narrow, and that is said first.
 
-use super::{Finding, FindingKind, NOISE_OF, Severity, Solution, SolvedParameter, Verdict};
+use super::{
+    Finding, FindingKind, NOISE_OF, Severity, Solution, SolvedParameter, SolvedSeries, Verdict,
+};
 use crate::table::significant;
 
 /// A wider range of a parameter whose logarithm is searched, or that is positive, reaches this factor
@@ -18,7 +20,11 @@ impl Solution {
     /// Where a fit is worse than a constant, says first which ranges may be the cause.
     pub(super) fn put_ranges_first(&mut self) {
         let poor = self.findings.iter().filter(|finding| finding.kind == FindingKind::PoorFit);
-        let Some(severity) = poor.map(|finding| finding.severity).max() else { return };
+        let poor: Vec<&Finding> = poor.collect();
+        // What fits a part of the data is not worse than a constant for all of them.
+        let is_poor = |own: &SolvedSeries| poor.iter().any(|one| one.series.contains(&own.label()));
+        let severity = poor.iter().map(|finding| finding.severity).max();
+        let Some(severity) = severity.filter(|_| self.series.iter().all(is_poor)) else { return };
         let may_be_cause: Vec<usize> =
             (0..self.parameters.len()).filter(|k| self.may_end_too_early(*k, severity)).collect();
         for k in may_be_cause {

@@ -1,7 +1,6 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
 use super::grounds::Grounds;
-use super::statistics::distributions::{normal_quantile, student_quantile};
 use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
     Profile, Profiles, Severity, SolvedCoefficient, SolvedDescent, residual_test,
@@ -102,6 +101,9 @@ pub struct Likelihood {
     /// Points less the parameters that the data determine; `None` where that is unknown.
     #[serde(default)]
     pub degrees_of_freedom: Option<f64>,
+    /// Half-width of the 95 % intervals by the standard error; `None` where that is unknown.
+    #[serde(default)]
+    pub quantile: Option<f64>,
     /// The residuals against the given sigmas; `None` where not all are given.
     #[serde(default)]
     pub chi_square: Option<ChiSquare>,
@@ -206,6 +208,8 @@ impl Course {
 pub struct CalibratedModel {
     /// Modifications as Modelica writes them.
     pub modifications: Vec<String>,
+    /// The same as assignments to parameters and start values of the translated model.
+    pub assignments: Vec<String>,
     /// What cannot be written so.
     pub remarks: Vec<String>,
 }
@@ -381,6 +385,14 @@ pub struct SolvedSeries {
 }
 
 impl SolvedSeries {
+    /// Its name in messages: `experiment / variable`.
+    pub(super) fn label(&self) -> String {
+        match self.experiment.is_empty() {
+            true => self.y[0].clone(),
+            false => format!("{} / {}", self.experiment, self.y[0]),
+        }
+    }
+
     /// Puts a series beside its simulation.
     pub fn new(series: &super::Series, simulated: &[f64]) -> SolvedSeries {
         let points: Vec<[f64; 3]> =
@@ -447,15 +459,6 @@ fn shown_unit(unit: &str) -> String {
 }
 
 impl Solution {
-    /// Half of a linearized 95 % interval, in standard errors.
-    pub(crate) fn quantile(&self) -> Option<f64> {
-        let freedom = self.likelihood.degrees_of_freedom.filter(|freedom| *freedom > 0.0)?;
-        Some(match self.likelihood.chi_square {
-            Some(_) => normal_quantile(0.975),
-            None => student_quantile(0.975, freedom),
-        })
-    }
-
     /// Takes standard errors and intervals away, and what was said of them. At the limit of a
     /// constraint they would be too small along it: the data may as well hold inside.
     pub(super) fn drop_intervals(&mut self) {

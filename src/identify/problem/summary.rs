@@ -61,6 +61,7 @@ impl Solution {
             likelihood: Likelihood {
                 error_model: ErrorModel::of(problem),
                 degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
+                quantile: Some(statistics.quantile).filter(|own| own.is_finite()),
                 chi_square: chi_square(problem, &statistics),
                 negative_log_likelihood: negative_log_likelihood(run, &statistics),
                 covariances: covariances(run, &statistics, &simulated),

@@ -329,15 +329,23 @@ impl Solution {
             .filter(|inner| !inner.is_empty())
             .chain(values)
             .collect();
+        let modification = match all.is_empty() {
+            true => String::new(),
+            false => format!("(\n    {})", all.join(",\n    ")),
+        };
         format!(
-            "model Calibrated \"{}\"\n  extends {class}(\n    {});\n{remarks}end Calibrated;\n",
+            "model Calibrated \"{}\"\n  extends {class}{modification};\n{remarks}end Calibrated;\n",
             self.subject.title.replace(['"', '\\'], "'"),
-            all.join(",\n    ")
         )
     }
 
-    /// The values found as assignments of a script.
+    /// The values found as assignments of a script, to be run after the model was translated.
     pub fn script(&self) -> String {
+        if let Some(model) = &self.calibrated {
+            let remarks = model.remarks.iter().map(|remark| format!("// {remark}\n"));
+            let lines = model.assignments.iter().map(|line| format!("{line}\n"));
+            return lines.chain(remarks).collect();
+        }
         let shared = self.parameters.iter().filter(|p| !p.name.contains('@'));
         shared.map(|p| format!("{} = {};\n", p.name, modelica_number(p.value))).collect()
     }

@@ -154,7 +154,7 @@ fn own_axis(own: &SolvedParameter, [low, high]: [f64; 2]) -> Axis {
 fn alone(view: &View, own: &SolvedParameter, [low, high]: [f64; 2]) -> Vec<Series> {
     let is_within = |x: f64| (low..=high).contains(&x);
     let mut all = vec![series("", &[(low, 1.0), (high, 1.0)], Mark::Dashed, 2)];
-    if let (Some(error), Some(quantile)) = (own.deviation, view.solution.quantile()) {
+    if let (Some(error), Some(quantile)) = (own.deviation, view.solution.likelihood.quantile) {
         let at = |k: usize| {
             let away = SHOWN * (2.0 * k as f64 / CORNERS as f64 - 1.0);
             (moved(own, error, away * quantile), away * away)

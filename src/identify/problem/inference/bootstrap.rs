@@ -228,7 +228,8 @@ fn drawn(
             }
             Resampling::Parametric => {
                 for place in own {
-                    let error = local.variance.sqrt() * rng.normal() / local.scales[place];
+                    let error =
+                        local.variance_of_points.sqrt() * rng.normal() / local.scales[place];
                     data[place] = local.simulated[place] + error;
                 }
             }

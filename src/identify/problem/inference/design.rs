@@ -12,7 +12,8 @@
 //! References: [Fedorov 1972](gapilib_base::bibliography#fedorov-1972);
 //! [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 6.
 
-use super::local::{Information, quantile};
+use super::super::statistics::quantile;
+use super::local::Information;
 use super::predictions::{Linear, linear};
 use super::{Curve, CurveRequest, Local, Reach};
 use crate::diag::Fault;
@@ -287,7 +288,7 @@ impl<'a> DesignSearch<'a> {
 
     /// Relative half-widths with so many points more.
     fn half_widths(&self, information: &Information, added: usize) -> Vec<Option<f64>> {
-        let quantile = quantile(self.local.known, self.local.freedom + added as f64);
+        let quantile = quantile(self.local.freedom_of_quantile + added as f64);
         let half = |variance: Option<f64>| variance.map(|variance| quantile * variance.sqrt());
         information.variances().into_iter().map(half).collect()
     }

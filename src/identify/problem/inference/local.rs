@@ -8,7 +8,6 @@
 //! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapters 5 and 6.
 
 use super::super::explicit::Explicit;
-use super::super::statistics::distributions::{normal_quantile, student_quantile};
 use super::super::{Evaluation, Problem, Statistics, limits};
 use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
@@ -20,13 +19,15 @@ const RANK: [f64; 2] = [1e-7, 1e-4];
 /// A direction of the parameters counts for a gradient beyond this share of its length: far above
 /// rounding (1e-16 times the condition), far below what a band could show.
 const SHARE: f64 = 1e-6;
-/// The upper end of a 95 % interval as a probability.
-const UPPER: f64 = 0.975;
 /// Beyond this relative offset the best values lie farther from the minimum than a tenth of their
 /// standard errors, and what is linear about them does not hold about the minimum.
 const MINIMUM: f64 = 0.1;
 /// Values nearer to a bound than this fraction of the range are held by it.
 const AT_BOUND: f64 = 1e-6;
+
+/// Why there is none where the residuals say nothing of the noise.
+const EXACT_FIT: &str =
+    "the residuals are as small as the errors of the simulation, so the noise is unknown";
 
 /// The fit about its best point.
 pub struct Local {
@@ -43,6 +44,8 @@ pub struct Local {
     /// Variance of the weighted residuals: 1 where sigma is known, else their sum of squares by the
     /// degrees of freedom.
     pub variance: f64,
+    /// That of a measurement, in units of its scale.
+    pub(crate) variance_of_points: f64,
     /// Points less parameters.
     pub freedom: f64,
     /// Whether the standard deviations of the measurements are known, so that the variance is 1.
@@ -52,6 +55,9 @@ pub struct Local {
     pub(crate) robust: bool,
     /// Half-width of a 95 % interval as a multiple of the standard error.
     pub quantile: f64,
+    /// The degrees of freedom of the quantile with as many points as there are: infinite where sigma is
+    /// known.
+    pub(crate) freedom_of_quantile: f64,
     /// The Fisher information.
     pub information: Information,
     /// Scales and offsets of relative data, and the information of the parameters with them.
@@ -89,8 +95,9 @@ impl Local {
         }
         let columns = found.weighted(&found.jacobian);
         let relative = found.explicit.clone().zip(with_coefficients(&found));
-        let Statistics { weights: scales, residuals, freedom, believed, variance, robust, .. } =
-            found;
+        let gradient = found.gradient();
+        let [residuals, scales] = found.reduced_points();
+        let Statistics { freedom, believed, variance, robust, .. } = found;
         if freedom <= 0.0 {
             return Err("there are not more points than parameters");
         }
@@ -101,21 +108,17 @@ impl Local {
         }
         let square = residuals.iter().map(|residual| residual * residual).sum::<f64>();
         if !believed && square <= square_of_simulation(problem, &scales, &simulated) {
-            return Err(
-                "the residuals are as small as the errors of the simulation, so the noise is \
-                 unknown",
-            );
+            return Err(EXACT_FIT);
         }
         let gram = jacobian.tr_mul(&jacobian) / variance;
         let information = Information::new(&gram, Local::tolerance(problem.noise));
         // Where sigma is believed, a standard error is 1 and not what is left of the residuals.
         let spread = if believed { variance.max(square / freedom) } else { square / freedom };
-        let gradient = jacobian.tr_mul(&DVector::from_column_slice(&residuals));
         if limits::along(problem, values).is_some() {
             return Err("the best values are at the limit of a constraint");
         }
         if !robust
-            && offset(problem, values, &gradient, &information) / variance.sqrt()
+            && offset(problem, values, gradient, &information) / variance.sqrt()
                 > MINIMUM * spread.sqrt()
         {
             return Err("the best values are not a minimum of the sum of squares");
@@ -127,10 +130,12 @@ impl Local {
             residuals,
             jacobian,
             variance,
+            variance_of_points: found.variance_of_points(),
             freedom,
             known: believed,
             robust,
             quantile: found.quantile,
+            freedom_of_quantile: found.freedom_of_points(),
             information,
             relative,
         })
@@ -166,7 +171,7 @@ impl Local {
         let own = problem.series[series].x.iter().enumerate();
         let nearest = own.min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()));
         let scale = nearest.map_or(1.0, |(k, _)| self.scales[first + k]);
-        self.variance.sqrt() / scale
+        self.variance_of_points.sqrt() / scale
     }
 
     /// The same where it is known: beyond the measured points only if it is the same at all of them.
@@ -211,24 +216,14 @@ pub fn errors_of_coefficients(found: &Statistics) -> Vec<Option<f64>> {
 /// How far the Gauss-Newton step would move the weighted points, root mean square over the
 /// parameters, times the root of the variance, which the information holds: the numerator of the
 /// relative offset of Bates and Watts. Parameters that a bound holds are left out.
-fn offset(
-    problem: &Problem,
-    values: &[f64],
-    gradient: &DVector<f64>,
-    information: &Information,
-) -> f64 {
-    let inside = |(k, part): (usize, &f64)| {
+fn offset(problem: &Problem, values: &[f64], gradient: Vec<f64>, information: &Information) -> f64 {
+    let inside = |(k, part): (usize, f64)| {
         let place = problem.parameters[k].fraction(values[k]);
-        if place.min(1.0 - place) < AT_BOUND { 0.0 } else { *part }
+        if place.min(1.0 - place) < AT_BOUND { 0.0 } else { part }
     };
-    let parts: Vec<f64> = gradient.iter().enumerate().map(inside).collect();
+    let parts: Vec<f64> = gradient.into_iter().enumerate().map(inside).collect();
     let moved = information.variance_of(&parts).unwrap_or(0.0);
     (moved / values.len() as f64).sqrt()
-}
-
-/// The 97.5 % quantile of the normal distribution where sigma is known, else of Student's.
-pub fn quantile(known: bool, freedom: f64) -> f64 {
-    if known { normal_quantile(UPPER) } else { student_quantile(UPPER, freedom) }
 }
 
 impl Information {

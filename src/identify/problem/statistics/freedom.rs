@@ -31,6 +31,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Less than one degree of freedom has no mean.
 const LEAST: f64 = 1.0;
+/// Points that are followed but for this part are followed: sensitivities have errors of about 1e-8.
+const ROUNDING: f64 = 1e-6;
 /// Singular values below this part of the largest are none.
 const NULL: f64 = 1e-10;
 
@@ -41,49 +43,85 @@ pub(crate) struct Effective {
     /// What the variance of the residuals is multiplied with: an output that determines the parameters
     /// has residuals that are smaller than its errors by more than those of the others are.
     pub(crate) inflation: f64,
+    /// Where some deviations are known: the root of what estimated variances are of unbiased ones, point
+    /// by point, and 1 where they are known.
+    pub(crate) reduction: Option<Vec<f64>>,
+}
+
+/// The directions in which parameters move the points.
+pub(crate) struct Directions {
+    found: SingularValues,
+    /// Those that are not zero.
+    along: Vec<usize>,
+    /// Parameters that move any.
+    count: usize,
+}
+
+impl Directions {
+    /// Of weighted sensitivities, column by column; `None` where these are not finite, or there are fewer
+    /// points than parameters.
+    pub(crate) fn of(points: usize, columns: &[Vec<f64>]) -> Option<Directions> {
+        if points < columns.len() || columns.iter().flatten().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let norm = |column: &Vec<f64>| column.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let used: Vec<(&Vec<f64>, f64)> = columns.iter().map(|own| (own, norm(own))).collect();
+        let used: Vec<&(&Vec<f64>, f64)> = used.iter().filter(|(_, norm)| *norm > 0.0).collect();
+        let matrix = DMatrix::from_fn(points, used.len(), |j, k| used[k].0[j] / used[k].1);
+        let found = SingularValues::of(&matrix)?;
+        let is_open = |d: &usize| found.s[*d] > NULL * found.largest();
+        let along = (0..found.s.len()).filter(is_open).collect();
+        Some(Directions { found, along, count: used.len() })
+    }
+
+    /// How far the parameters follow two points together.
+    fn followed(&self, p: usize, q: usize) -> f64 {
+        self.along.iter().map(|&d| self.found.u[(p, d)] * self.found.u[(q, d)]).sum()
+    }
+
+    /// Points less what the parameters follow of them; `count`: how many they are.
+    fn left(&self, points: &[usize], count: f64) -> f64 {
+        let followed: f64 = points.iter().map(|&j| self.followed(j, j)).sum();
+        (count - followed).max(LEAST)
+    }
+
+    /// Whether the parameters follow these points wherever they are.
+    pub(crate) fn follow(&self, points: &[usize]) -> bool {
+        points.iter().all(|&j| 1.0 - self.followed(j, j) < ROUNDING)
+    }
+
+    /// What points contribute to the variance of a parameter.
+    fn variance(&self, k: usize, points: &[usize]) -> f64 {
+        let SingularValues { u, v_t, s, .. } = &self.found;
+        let part =
+            |j: usize| -> f64 { self.along.iter().map(|&d| v_t[(d, k)] * u[(j, d)] / s[d]).sum() };
+        points.iter().map(|&j| elementary::powi(part(j), 2)).sum()
+    }
 }
 
 /// Of `freedom` degrees in all; `columns`: weighted sensitivities.
 pub fn effective(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Effective {
+    let all_alike = Effective { freedom, inflation: 1.0, reduction: None };
+    if freedom <= 0.0 {
+        return all_alike;
+    }
     if let Some(found) = of_covariances(problem, columns, freedom) {
         return found;
     }
-    let groups = groups(problem);
-    let count = groups.iter().max().map_or(0, |most| most + 1);
-    let points = groups.len();
-    let finite = columns.iter().flatten().all(|value| value.is_finite());
-    let all_alike = Effective { freedom, inflation: 1.0 };
-    if count < 2 || points < columns.len() || !finite || freedom <= 0.0 {
+    let members: Vec<Vec<usize>> = match problem.series.iter().all(|own| own.deviation().is_some())
+    {
+        true => groups(problem).into_iter().map(|(_, points)| points).collect(),
+        false => Vec::new(),
+    };
+    let points = problem.n_points();
+    let Some(directions) = Directions::of(points, columns).filter(|_| members.len() > 1) else {
         return all_alike;
-    }
-    let norms: Vec<f64> =
-        columns.iter().map(|column| column.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
-    let used: Vec<usize> = (0..columns.len()).filter(|&k| norms[k] > 0.0).collect();
-    let scaled = DMatrix::from_fn(points, used.len(), |j, k| columns[used[k]][j] / norms[used[k]]);
-    let Some(found) = SingularValues::of(&scaled) else { return all_alike };
-    let along: Vec<usize> =
-        (0..found.s.len()).filter(|&d| found.s[d] > NULL * found.largest()).collect();
-    let in_group = |g: usize| (0..points).filter(|&j| groups[j] == g).collect::<Vec<usize>>();
-    let members: Vec<Vec<usize>> = (0..count).map(in_group).collect();
-    // Points less what the parameters follow of them.
-    let own_freedom = |places: &Vec<usize>| -> f64 {
-        let leverage = |j: &usize| -> f64 {
-            along.iter().map(|&d| elementary::powi(found.u[(*j, d)], 2)).sum()
-        };
-        let followed: f64 = places.iter().map(leverage).sum();
-        (places.len() as f64 - followed).max(LEAST)
     };
-    let own: Vec<f64> = members.iter().map(own_freedom).collect();
-    // What each group contributes to the variance of a parameter, and the least degrees of freedom.
-    let part = |k: usize, j: usize| -> f64 {
-        along.iter().map(|&d| found.v_t[(d, k)] * found.u[(j, d)] / found.s[d]).sum()
-    };
+    let own: Vec<f64> =
+        members.iter().map(|points| directions.left(points, points.len() as f64)).collect();
     let mut effective = all_alike;
-    for k in 0..used.len() {
-        let variance = |places: &Vec<usize>| -> f64 {
-            places.iter().map(|&j| elementary::powi(part(k, j), 2)).sum()
-        };
-        let plain: Vec<f64> = members.iter().map(variance).collect();
+    for k in 0..directions.count {
+        let plain: Vec<f64> = members.iter().map(|points| directions.variance(k, points)).collect();
         let sizes = members.iter().map(Vec::len).zip(&own);
         let true_ones: Vec<f64> =
             plain.iter().zip(sizes).map(|(v, (n, own))| v * n as f64 / own).collect();
@@ -98,60 +136,112 @@ pub fn effective(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Effec
     effective
 }
 
-/// The same where covariances of outputs are estimated; `None` where none is.
-fn of_covariances(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Option<Effective> {
+/// The groups whose covariances are estimated.
+fn covariances(problem: &Problem) -> Vec<JointGroup> {
     let all = joint::groups(&problem.series).into_iter();
     let estimated = |own: &(&str, Vec<usize>)| problem.series[own.1[0]].sigma.is_estimated();
-    let all: Vec<JointGroup> = all
-        .filter(estimated)
-        .map(|(_, members)| joint::group(&problem.series, &members, 0.0))
-        .collect();
+    let own = all.filter(estimated);
+    own.map(|(_, members)| joint::group(&problem.series, &members, 0.0)).collect()
+}
+
+/// The same where covariances of outputs are estimated; `None` where none is.
+fn of_covariances(problem: &Problem, columns: &[Vec<f64>], freedom: f64) -> Option<Effective> {
+    let all = covariances(problem);
     let points = columns.first()?.len();
-    let is_finite = columns.iter().flatten().all(|value| value.is_finite());
-    if all.is_empty() || !is_finite || points < columns.len() || freedom <= 0.0 {
-        return None;
-    }
-    let norm = |column: &Vec<f64>| column.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let used: Vec<&Vec<f64>> = columns.iter().filter(|column| norm(column) > 0.0).collect();
-    let scaled = DMatrix::from_fn(points, used.len(), |j, k| used[k][j] / norm(used[k]));
-    let found = SingularValues::of(&scaled)?;
-    let along: Vec<usize> =
-        (0..found.s.len()).filter(|&d| found.s[d] > NULL * found.largest()).collect();
-    let mut effective = Effective { freedom, inflation: 1.0 };
+    let directions = Directions::of(points, columns).filter(|_| !all.is_empty())?;
+    let mut effective = Effective { freedom, inflation: 1.0, reduction: None };
     for own in &all {
-        // What the parameters follow of each combination of outputs.
-        let mut followed = DMatrix::<f64>::zeros(own.size, own.size);
-        for row in &own.rows {
-            for ((a, p), (b, q)) in row.iter().flat_map(|a| row.iter().map(move |b| (a, b))) {
-                let parts = along.iter().map(|&d| found.u[(*p, d)] * found.u[(*q, d)]);
-                followed[(*a, *b)] += parts.sum::<f64>();
-            }
-        }
-        let most = SymmetricEigen::new(followed).eigenvalues.max();
-        let n = own.count() / own.size as f64;
-        let others = own.size as f64 - 1.0;
-        let left = (n - most - others).max(LEAST);
+        let (left, factor) = of_covariance(own, &directions);
         effective.freedom = effective.freedom.min(left);
-        // Errors of one output tell of those of another as covariates do.
-        let factor = n / left * (1.0 + others / (left - 1.0).max(LEAST));
         effective.inflation = effective.inflation.max(factor * freedom / points as f64);
     }
     Some(effective)
 }
 
-/// The number of the standard deviation of each point: series with one name share it. Empty where not all
-/// are estimated.
-fn groups(problem: &Problem) -> Vec<usize> {
-    let mut names: Vec<&str> = Vec::new();
-    let mut groups = Vec::new();
-    for series in &problem.series {
-        let Some(deviation) = series.deviation() else { return Vec::new() };
-        let known = names.iter().position(|name| *name == deviation);
-        let group = known.unwrap_or(names.len());
-        if known.is_none() {
-            names.push(deviation);
+/// The degrees of freedom of an estimated covariance, and by what the variances of parameters are larger
+/// than with the most likely one.
+fn of_covariance(own: &JointGroup, directions: &Directions) -> (f64, f64) {
+    // What the parameters follow of each combination of outputs.
+    let mut followed = DMatrix::<f64>::zeros(own.size, own.size);
+    for row in &own.rows {
+        for ((a, p), (b, q)) in row.iter().flat_map(|a| row.iter().map(move |b| (a, b))) {
+            followed[(*a, *b)] += directions.followed(*p, *q);
         }
-        groups.extend(std::iter::repeat_n(group, series.x.len()));
     }
-    groups
+    let most = SymmetricEigen::new(followed).eigenvalues.max();
+    let n = own.count() / own.size as f64;
+    let others = own.size as f64 - 1.0;
+    let left = (n - most - others).max(LEAST);
+    // Errors of one output tell of those of another as covariates do.
+    (left, n / left * (1.0 + others / (left - 1.0).max(LEAST)))
+}
+
+/// Points whose deviations are one estimate.
+struct Estimate {
+    points: Vec<usize>,
+    freedom: f64,
+    /// By what the variance of errors is larger than its most likely value.
+    factor: f64,
+}
+
+/// The same where some deviations are estimated, and others known: these have no part in the sums of
+/// Satterthwaite and Meier. `shares`: what each point counts.
+pub fn effective_of_some(problem: &Problem, columns: &[Vec<f64>], shares: &[f64]) -> Effective {
+    let all: Vec<usize> = (0..shares.len()).collect();
+    let mut reduction = vec![1.0; shares.len()];
+    let mut effective = Effective { freedom: f64::INFINITY, inflation: 1.0, reduction: None };
+    let Some(directions) = Directions::of(all.len(), columns) else {
+        return Effective { reduction: Some(reduction), ..effective };
+    };
+    let estimates = estimates(problem, shares, &directions);
+    for own in &estimates {
+        own.points.iter().for_each(|point| reduction[*point] = own.factor.sqrt().recip());
+    }
+    let mut reduced = columns.to_vec();
+    for column in &mut reduced {
+        column.iter_mut().zip(&reduction).for_each(|(value, factor)| *value *= factor);
+    }
+    let directions = Directions::of(all.len(), &reduced).unwrap_or(directions);
+    for k in 0..directions.count {
+        let whole = directions.variance(k, &all);
+        let part = |own: &Estimate| (directions.variance(k, &own.points) / whole, own.freedom);
+        let parts: Vec<(f64, f64)> = estimates.iter().map(part).collect();
+        let squares: f64 = parts.iter().map(|(share, freedom)| share * share / freedom).sum();
+        effective.freedom = effective.freedom.min(squares.recip().max(LEAST));
+        let of_weights = parts.iter().map(|(share, freedom)| share * (1.0 - share) / freedom);
+        effective.inflation = effective.inflation.max(1.0 + 4.0 * of_weights.sum::<f64>());
+    }
+    Effective { reduction: Some(reduction), ..effective }
+}
+
+/// The estimated deviations and covariances of a problem.
+fn estimates(problem: &Problem, shares: &[f64], directions: &Directions) -> Vec<Estimate> {
+    let of_joint = |own: JointGroup| {
+        let (freedom, factor) = of_covariance(&own, directions);
+        let points = own.rows.iter().flatten().map(|(_, point)| *point).collect();
+        Estimate { points, freedom, factor }
+    };
+    let single = |(_, points): (&str, Vec<usize>)| {
+        let count: f64 = points.iter().map(|j| shares[*j]).sum();
+        let freedom = directions.left(&points, count);
+        Estimate { points, freedom, factor: count / freedom }
+    };
+    let joints = covariances(problem).into_iter().map(of_joint);
+    joints.chain(groups(problem).into_iter().map(single)).collect()
+}
+
+/// The points of each estimated standard deviation that belongs to no covariance: series with one name
+/// share it.
+fn groups(problem: &Problem) -> Vec<(&str, Vec<usize>)> {
+    let (mut all, mut first) = (Vec::<(&str, Vec<usize>)>::new(), 0);
+    for series in &problem.series {
+        let own = first..first + series.x.len();
+        first = own.end;
+        let Some(name) = series.deviation().filter(|_| series.joint.is_none()) else { continue };
+        match all.iter_mut().find(|known| known.0 == name) {
+            Some((_, points)) => points.extend(own),
+            None => all.push((name, own.collect())),
+        }
+    }
+    all
 }

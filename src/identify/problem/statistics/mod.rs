@@ -87,8 +87,11 @@ pub struct Statistics {
     pub variance: f64,
     /// Whether the fitness is a robust one.
     pub(crate) robust: bool,
-    /// Whether some deviations are known and others estimated: neither is scaled by all residuals.
-    is_mixed: bool,
+    /// Where some deviations are known and others estimated: what sensitivities of the points are
+    /// multiplied with, so that standard errors have the degrees of freedom of the estimated ones.
+    reduction: Option<Vec<f64>>,
+    /// The degrees of freedom of the quantile; infinite where it is that of the normal distribution.
+    freedom_of_quantile: f64,
     /// Weights of the points: reciprocal standard deviations where these are known or estimated.
     pub weights: Vec<f64>,
     /// Weighted residuals, measured less simulated.
@@ -138,7 +141,7 @@ impl Statistics {
     /// What the root of the rise of the sum of squares is within the 95 % limit, in units of the
     /// residual variance.
     pub(super) fn quantile_of_squares(&self) -> f64 {
-        if self.believed || self.robust || self.is_mixed {
+        if self.believed || self.robust || self.is_mixed() {
             return self.quantile;
         }
         self.quantile * (self.variance * self.freedom / self.square).sqrt()
@@ -180,7 +183,8 @@ impl Statistics {
             believed: false,
             variance: f64::NAN,
             robust: false,
-            is_mixed: false,
+            reduction: None,
+            freedom_of_quantile: f64::NAN,
             weights: data.weights.clone(),
             residuals: data.residuals.clone(),
             repeated,
@@ -235,8 +239,9 @@ impl Statistics {
         let explicit = self.explicit.as_ref().map(|own| weighted(&own.columns, &data.scales));
         let columns = explicit.as_ref().unwrap_or(&best.columns);
         let spread = Spread::of(problem, evaluation, data, (columns, self.open));
-        let reduced = spread.reduced(problem, &best.columns);
-        let own = reduced.as_ref().unwrap_or(&best.columns);
+        let mut reduced = best.columns.clone();
+        reduce(&mut reduced, spread.reduction.as_deref());
+        let own = &reduced;
         self.uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
             true => uncertainty_given(own, spread.variance),
             false => None,
@@ -251,7 +256,7 @@ impl Statistics {
         (self.quantile, self.freedom, self.variance) =
             (spread.quantile, spread.freedom, spread.variance);
         (self.believed, self.robust) = (spread.believed, spread.robust);
-        self.is_mixed = spread.of_estimated.is_some();
+        (self.reduction, self.freedom_of_quantile) = (spread.reduction, spread.freedom_of_quantile);
     }
 
     /// Finds which parameters have no effect, and which act only together.
@@ -406,17 +411,32 @@ impl Data {
     }
 }
 
+/// Half-width of a 95 % interval by the standard error: the quantile of Student's distribution, with
+/// infinitely many degrees of freedom that of the normal one.
+pub(super) fn quantile(freedom: f64) -> f64 {
+    if freedom == f64::INFINITY { normal_quantile(UPPER) } else { student_quantile(UPPER, freedom) }
+}
+
+/// Multiplies the sensitivities of each point with a factor.
+fn reduce(columns: &mut [Vec<f64>], reduction: Option<&[f64]>) {
+    for column in columns {
+        let factors = reduction.into_iter().flatten();
+        column.iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
+    }
+}
+
 /// What the variance of the errors is, and how it is known.
 struct Spread {
     freedom: f64,
     robust: bool,
     believed: bool,
     variance: f64,
-    /// Where some deviations are known and others estimated: what sensitivities of points with estimated
-    /// ones are multiplied with, so that their standard errors are those of as many degrees of freedom.
-    of_estimated: Option<f64>,
+    /// Where some deviations are known and others estimated, [`freedom::Effective::reduction`].
+    reduction: Option<Vec<f64>>,
     /// The quantile of a 95 % interval.
     quantile: f64,
+    /// Its degrees of freedom.
+    freedom_of_quantile: f64,
 }
 
 impl Spread {
@@ -433,46 +453,35 @@ impl Spread {
         });
         let plain =
             robust.is_none() && evaluation.scales().is_some_and(|own| own == evaluation.weights());
-        let believed = plain
-            && matches!(ErrorModel::of(problem), ErrorModel::Known | ErrorModel::Computed)
-            && problem.objectives[0].0 != "log_likelihood";
-        let effective = freedom::effective(problem, columns, freedom);
+        let believed =
+            plain && matches!(ErrorModel::of(problem), ErrorModel::Known | ErrorModel::Computed);
         let is_known = |series: &Series| series.sigma.is_known();
         let is_mixed = plain
             && ErrorModel::of(problem) == ErrorModel::Estimated
             && problem.series.iter().any(is_known);
-        let of_estimated = is_mixed.then(|| (freedom / data.shares.iter().sum::<f64>()).sqrt());
+        let effective = match is_mixed {
+            true => freedom::effective_of_some(problem, columns, &data.shares),
+            false => freedom::effective(problem, columns, freedom),
+        };
         let variance = match robust {
             Some(robust) => robust.variance,
             None if is_mixed => effective.inflation,
             None if believed => 1.0,
             None => effective.inflation * data.square / freedom,
         };
-        let quantile = match believed {
-            true => normal_quantile(UPPER),
-            false => {
-                student_quantile(UPPER, robust.map_or(effective.freedom, |robust| robust.freedom))
-            }
+        let freedom_of_quantile = match believed {
+            true => f64::INFINITY,
+            false => robust.map_or(effective.freedom, |robust| robust.freedom),
         };
-        Spread { freedom, robust: robust.is_some(), believed, variance, of_estimated, quantile }
-    }
-
-    /// Sensitivities whose parts at points with estimated deviations are smaller; `None` where all
-    /// deviations are of one kind.
-    fn reduced(&self, problem: &Problem, columns: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-        let factor = self.of_estimated?;
-        let of_points: Vec<f64> = problem
-            .series
-            .iter()
-            .flat_map(|own| {
-                let factor = if own.sigma.is_known() { 1.0 } else { factor };
-                std::iter::repeat_n(factor, own.x.len())
-            })
-            .collect();
-        let reduced = |column: &Vec<f64>| {
-            column.iter().zip(&of_points).map(|(value, factor)| value * factor).collect()
-        };
-        Some(columns.iter().map(reduced).collect())
+        Spread {
+            freedom,
+            robust: robust.is_some(),
+            believed,
+            variance,
+            reduction: effective.reduction,
+            quantile: quantile(freedom_of_quantile),
+            freedom_of_quantile,
+        }
     }
 
     /// By how much the weighted sum of squares may rise within the 95 % limit of one parameter.
@@ -485,7 +494,7 @@ impl Statistics {
     /// The standard error of Σ wₖ pₖ, also where the data determine no pₖ alone; `None` where there
     /// are no standard errors.
     pub(super) fn error_of(&self, weights: &[f64]) -> Option<f64> {
-        let columns = weighted(&self.jacobian, &self.scales);
+        let columns = self.reduced(&self.jacobian, &self.scales);
         self.uncertainty.as_ref()?;
         error_of_combination(&columns, weights, self.variance, self.rank_tolerance)
     }
@@ -496,7 +505,7 @@ impl Statistics {
     /// which part of the largest singular values are none.
     pub(super) fn explicit_columns(&self) -> Option<(Vec<Vec<f64>>, f64)> {
         let own = self.explicit.as_ref()?;
-        Some((weighted(&own.columns, &self.scales), self.rank_tolerance))
+        Some((self.reduced(&own.columns, &self.scales), self.rank_tolerance))
     }
 
     /// What makes derivatives those of the residuals, all series as if there were no equal ones.
@@ -505,9 +514,47 @@ impl Statistics {
     }
 
     /// The sensitivities of the residuals by the parameters, column by column, from derivatives of the
-    /// points.
+    /// points, as standard errors follow from them.
     pub(super) fn weighted(&self, jacobian: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        weighted(jacobian, &self.by_weights())
+        self.reduced(jacobian, &self.by_weights())
+    }
+
+    fn reduced(&self, jacobian: &[Vec<f64>], scales: &Scales) -> Vec<Vec<f64>> {
+        let mut columns = weighted(jacobian, scales);
+        reduce(&mut columns, self.reduction.as_deref());
+        columns
+    }
+
+    /// Whether some deviations are known and others estimated: neither is scaled by all residuals.
+    pub(super) fn is_mixed(&self) -> bool {
+        self.reduction.is_some()
+    }
+
+    /// The variance of a measurement in units of its weight.
+    pub(super) fn variance_of_points(&self) -> f64 {
+        if self.is_mixed() { 1.0 } else { self.variance }
+    }
+
+    /// The degrees of freedom of the quantile where all outputs have one variance; further points add to
+    /// them.
+    pub(super) fn freedom_of_points(&self) -> f64 {
+        if self.is_mixed() || self.believed { self.freedom_of_quantile } else { self.freedom }
+    }
+
+    /// Derivatives of half the weighted sum of squares by the parameters, with the other sign.
+    pub(super) fn gradient(&self) -> Vec<f64> {
+        let columns = weighted(&self.jacobian, &self.by_weights()).into_iter();
+        let product =
+            |column: Vec<f64>| column.iter().zip(&self.residuals).map(|(value, r)| value * r).sum();
+        columns.map(product).collect()
+    }
+
+    /// Residuals and weights of the points with the degrees of freedom of estimated deviations where
+    /// others are known.
+    pub(super) fn reduced_points(&self) -> [Vec<f64>; 2] {
+        let mut points = [self.residuals.clone(), self.weights.clone()];
+        reduce(&mut points, self.reduction.as_deref());
+        points
     }
 
     /// Whether a parameter that has no effect acts on the outputs, so that it is scales and offsets of
@@ -537,7 +584,7 @@ impl Statistics {
     pub(super) fn deviation_with(&self, k: usize, held: usize) -> Option<f64> {
         let kept = (0..self.jacobian.len()).filter(|j| *j != held);
         let columns: Vec<Vec<f64>> = kept.map(|j| self.jacobian[j].clone()).collect();
-        let found = uncertainty_given(&weighted(&columns, &self.by_weights()), self.variance)?;
+        let found = uncertainty_given(&self.weighted(&columns), self.variance)?;
         let place = if k > held { k - 1 } else { k };
         Some(found.standard_deviations[place]).filter(|own| own.is_finite())
     }
@@ -552,7 +599,7 @@ impl Statistics {
         }
         let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
         let pull = ends.find(|end| end.parameter == k)?.pull;
-        if self.believed || self.robust || self.is_mixed {
+        if self.believed || self.robust || self.is_mixed() {
             return Some(pull);
         }
         // Residuals at the end of a range contain the misfit that the end causes: an error estimated
