@@ -1,6 +1,7 @@
 //! `gapi identify` as a user starts it: real data, inputs that follow data, and runs that are
 //! killed.
 
+use crate::support::program;
 use crate::support::shipped::project;
 use serde_json::Value;
 use std::fs;
@@ -705,4 +706,83 @@ fn an_unknown_output_is_refused_with_the_names_of_the_model() {
     assert_eq!(code, 1, "{errors}");
     assert!(errors.contains("has no variable `q`"), "{errors}");
     assert!(errors.contains("its variables are `time`, `level`"), "{errors}");
+}
+
+const POOL: &str = "model Pool
+  parameter Real k = 1;
+  parameter Real g = 1;
+  parameter Real R[2] = {1, 1};
+  Real c(start = 1, fixed = true);
+  Real y = g*c;
+equation
+  der(c) = -k*R[1]*c;
+end Pool;
+";
+
+/// After the model was translated, the script with the values makes it the calibrated model, whatever the
+/// problem estimates besides.
+#[test]
+fn the_script_with_the_values_calibrates_the_model() {
+    let range = "{ min = 0.05, max = 9 }";
+    let start = "c = { min = 0.1, max = 9, initial = true }";
+    for (parameters, set, output) in [
+        (format!("k = {range}\n{start}"), "", "column = \"c\""),
+        (format!("\"R[1]\" = {range}\n{start}"), "", "column = \"c\", sigma = \"estimate\""),
+        (format!("k = {{ fixed = 0.5 }}\ng = {range}"), "", "column = \"c\", sigma = 0.1"),
+        (format!("g = {range}\nk = {{ tied = \"g/4\" }}"), "", "column = \"c\""),
+        (format!("k_a = {range}\n{start}"), "set = { k = \"2*k_a\" }", "column = \"c\""),
+        (format!("k = {range}\ns = {range}\n{start}"), "", "column = \"c\", sigma = \"s*0.1\""),
+        (format!("k = {range}"), "", "column = \"c\", scale = \"estimate\", offset = \"o\""),
+        (
+            format!("k = {range}\ntau = {{ min = 0.1, max = 2 }}"),
+            "",
+            "column = \"c\", delay = \"tau\"",
+        ),
+        (
+            format!("k = {{ min = 0.05, max = 9, per_experiment = true }}\n{start}"),
+            "",
+            "column = \"c\"",
+        ),
+    ] {
+        let problem = format!(
+            "model = \"Pool\"\nfiles = [\"Pool.mo\"]\nbands = false\n[parameters]\n{parameters}\n\
+             [[experiment]]\ndata = \"d.csv\"\n{set}\noutputs = {{ y = {{ {output} }} }}\n"
+        );
+        let row = |k: u32| {
+            let t = f64::from(k) / 2.0;
+            format!("{t},{:.3}\n", 2.0 * (-0.5 * t).exp() + 0.01 * (3.0 * t).sin())
+        };
+        let data = "time,c\n".to_owned() + &(0..9).map(row).collect::<String>();
+        let script = |class: &str, values: &str| {
+            format!(
+                "openModel(\"Pool.mo\");\nopenModel(\"fit/Calibrated.mo\");\n\
+                 translateModel(\"{class}\");\n{values}simulateModel(\"{class}\", stopTime = 1, \
+                 tolerance = 1e-9);\nx = readTrajectory(\"dsres.mat\", {{\"c\", \"y\"}}, \
+                 readTrajectorySize(\"dsres.mat\"));\n\
+                 print(String(x[1, end], 9) + \" \" + String(x[2, end], 9));\n"
+            )
+        };
+        let here = program::folder(&[
+            ("Pool.mo", POOL),
+            ("p.toml", &problem),
+            ("d.csv", &data),
+            ("a.mos", &script("Pool", "RunScript(\"fit/calibrated.mos\");\n")),
+            ("b.mos", &script("Calibrated", "")),
+        ]);
+        let (code, out, errors) = program::gapi(&here, &["identify", "p.toml", "--out", "fit"]);
+        assert_eq!(code, 0, "{parameters}\n{out}{errors}");
+        let values = ["a.mos", "b.mos"].map(|script| {
+            let (code, out, errors) = program::gapi(&here, &["run", script]);
+            assert_eq!(code, 0, "{parameters}\n{out}{errors}");
+            out.lines().last().unwrap().to_owned()
+        });
+        let text = fs::read_to_string(here.path().join("fit/calibrated.mos")).unwrap();
+        assert_eq!(values[0], values[1], "{parameters}\n{text}");
+        let is_of_model = !["k_a", "s =", "tau", "per_"].iter().any(|own| parameters.contains(own));
+        assert_eq!(
+            is_of_model,
+            !text.contains("// not set, because it is "),
+            "{parameters}\n{text}"
+        );
+    }
 }

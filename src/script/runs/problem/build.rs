@@ -35,7 +35,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Fitness functions whose scale is estimated unless sigma is given.
-const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
+const SCALED: [&str; 4] = ["huber", "tukey", "mae", LOG_LIKELIHOOD];
+/// The likelihood, which is also the objective where some sigmas are estimated.
+const LOG_LIKELIHOOD: &str = "log_likelihood";
 
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {
@@ -122,7 +124,7 @@ fn build_in(
         let place = file.places.at(&["parameters"]);
         return Err(vec![fault.help("give one a range: `k = { min = 0.1, max = 10 }`").at(place)]);
     }
-    if file.fitness.is_none() {
+    if file.fitness.is_none() || is_one_of(file, &[LOG_LIKELIHOOD]) {
         decide(&mut read.series);
     }
     let Experiments {
@@ -417,7 +419,7 @@ fn experiments(
     let logarithmic: Vec<usize> = all.logarithmic.iter().map(|own| own.0).collect();
     super::covariance::check_all(file, &all.series).map_err(alone)?;
     let kept: Vec<&Series> = all.validation.iter().flat_map(|own| &own.1).collect();
-    super::relative::check_all(file, (&all.series, &logarithmic), &kept).map_err(alone)?;
+    super::relative::check_all(file, (&mut all.series, &logarithmic), &kept).map_err(alone)?;
     Ok(all)
 }
 
@@ -476,7 +478,7 @@ fn objectives(
         }
         let entry = entry.map_err(one)?;
         let mut options = Options::default();
-        if sigmas_are_known && ROBUST.contains(&entry.name) {
+        if sigmas_are_known && SCALED.contains(&entry.name) {
             options.set("scale", 1.0);
         }
         settings.iter().for_each(|(name, value)| options.set(name, *value));
@@ -487,6 +489,20 @@ fn objectives(
     Ok(objectives)
 }
 
+/// Whether a problem names one fitness function, without settings, and it is one of these.
+fn is_one_of(file: &ProblemFile, known: &[&str]) -> bool {
+    let is_known = |name: &String| {
+        registry::find("fitness function", FITNESSES, name)
+            .is_ok_and(|entry| known.contains(&entry.name))
+    };
+    match &file.fitness {
+        Some(OneOrMany::One(name)) => is_known(name),
+        // A record has a vector of them.
+        Some(OneOrMany::Many(names)) => matches!(names.as_slice(), [name] if is_known(name)),
+        None | Some(OneOrMany::Set(_)) => false,
+    }
+}
+
 /// Deviations that are estimated or that the model computes, and errors that are not normal, have one
 /// objective: the likelihood.
 fn likelihood_alone(
@@ -494,18 +510,7 @@ fn likelihood_alone(
     series: &[Series],
     noise: f64,
 ) -> Result<Vec<Objective>, Diagnostic> {
-    let known = |name: &String| {
-        registry::find("fitness function", FITNESSES, name)
-            .is_ok_and(|entry| ["sum_of_squares", "log_likelihood"].contains(&entry.name))
-    };
-    let allowed = match &file.fitness {
-        None => true,
-        Some(OneOrMany::One(name)) => known(name),
-        // A record has a vector of them.
-        Some(OneOrMany::Many(names)) => matches!(names.as_slice(), [name] if known(name)),
-        Some(OneOrMany::Set(_)) => false,
-    };
-    if !allowed {
+    if file.fitness.is_some() && !is_one_of(file, &["sum_of_squares", LOG_LIKELIHOOD]) {
         let fault = fault!(
             BAD_OPTION,
             "a sigma that is estimated or computed by the model, a `covariance`, and an `error` that is \

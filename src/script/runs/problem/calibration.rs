@@ -4,7 +4,7 @@
 use super::file::{ProblemFile, Role, ValueEntry};
 use super::{deviation, dynamics, enclosing_class};
 use crate::codegen::Program;
-use crate::identify::problem::{CalibratedModel, Solution, modelica_number};
+use crate::identify::problem::{CalibratedModel, Solution, SolvedParameter, modelica_number};
 use crate::source::Span;
 use crate::syntax::print;
 use indexmap::IndexMap;
@@ -69,6 +69,8 @@ impl Calibration {
             let found = solution.parameters.iter().find(|one| one.name == entry.name);
             let value = entry.text.clone().or(found.map(|one| modelica_number(one.value)));
             let Some(value) = value else { continue };
+            let attribute = if entry.initial { ".start" } else { "" };
+            model.assignments.push(format!("{}{attribute} = {value};", entry.name));
             match without_subscripts(&entry.name) {
                 (path, indices) if indices.is_empty() => {
                     model.modifications.push(match entry.initial {
@@ -93,6 +95,15 @@ impl Calibration {
                 })),
             }
         }
+        let is_elsewhere =
+            |own: &&SolvedParameter| !self.entries.iter().any(|entry| entry.name == own.name);
+        model.remarks.extend(solution.parameters.iter().filter(is_elsewhere).map(|own| {
+            let why = match own.name.split_once('@') {
+                Some((_, experiment)) => format!("the value of {experiment} alone"),
+                None => "not a parameter of the model".to_owned(),
+            };
+            format!("not set, because it is {why}: {} = {}", own.name, modelica_number(own.value))
+        }));
         model
     }
 

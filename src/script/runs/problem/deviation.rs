@@ -109,6 +109,16 @@ pub(super) fn value_expression(value: &ValueEntry, file: &ProblemFile) -> Option
     (!names.0.is_empty() && names.0.iter().all(is_listed)).then_some(read)
 }
 
+/// The first name in a string that `[parameters]` does not list; `None` where it is not an expression with
+/// names.
+pub(super) fn unknown_in(text: &str, file: &ProblemFile) -> Option<String> {
+    let mut read = expression(text, None).ok()?;
+    QuotedNames.expression(&mut read);
+    let mut names = References(Vec::new());
+    names.expression(&mut read);
+    names.0.into_iter().find(|own| !file.parameters.contains_key(own))
+}
+
 /// Adds the parameters of the problem that those among these depend on that are tied.
 fn add_tied(names: &mut Vec<String>, file: &ProblemFile, is_meant: impl Fn(&str) -> bool) {
     let mut next = 0;

@@ -7,8 +7,38 @@ use super::invariants::invariants;
 use crate::bail;
 use crate::causalize::CausalizedDae;
 use crate::diag::Fault;
+use crate::identify::significant;
 use crate::registry::BAD_OPTION;
 use std::fmt::Write;
+
+/// Delays that are shorter than this part of the measured time are said to be slow: with 1e-3, a
+/// simulation of one state took 4 ms, with 1e-4 40 ms (a decay, measured for 5.5 s).
+const SHORT: f64 = 1e-3;
+
+/// Says that short delays are slow.
+pub(super) fn note_short_delays(
+    file: &ProblemFile,
+    entry: &ExperimentEntry,
+    x: &[f64],
+) -> Option<String> {
+    let span = x.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        - x.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut delays = entry.outputs.values().filter_map(|output| output.entry().delay);
+    delays.find_map(|delay| {
+        let DelayEntry::Parameter(name) = delay else { return None };
+        let parameter = file.parameters.get(&name)?;
+        let Role::Free { range: [min, _], .. } = parameter.role(&name).ok()? else { return None };
+        (min < SHORT * span).then(|| {
+            format!(
+                "the range of the delay `{name}` begins at {}: steps are not longer than the delay, so \
+                 that simulations with short delays are slow. Begin it at {} s or more, a thousandth \
+                 of the measured time, unless shorter delays are possible",
+                significant(min, 3),
+                significant(SHORT * span, 2)
+            )
+        })
+    })
+}
 
 /// Whether a parameter of the problem is a delay of measurements and not a parameter of the model.
 pub(super) fn is_delay(file: &ProblemFile, name: &str) -> bool {

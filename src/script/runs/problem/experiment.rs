@@ -26,6 +26,7 @@ use crate::models::static_curve;
 use crate::registry::BAD_OPTION;
 use crate::sim::{self, Residual, Settings, TimeBudget};
 use crate::source::Span;
+use crate::syntax::ast::CausalityPrefix;
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -189,8 +190,13 @@ impl Source<'_> {
         let abscissa = self.abscissa(notes);
         let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.at(&["x"]))])?;
         let class = self.class(session, &abscissa, notes)?;
-        let translated = simulation::translated(session, &class.name)
-            .map_err(|errors| self.set_variable(session).map_or(errors, |error| vec![error]))?;
+        let translated = match simulation::translated(session, &class.name) {
+            Ok(translated) => translated,
+            Err(errors) => {
+                let entry = self.with_starts(session).ok_or(errors)?;
+                return Source { entry: &entry, ..*self }.build(session, notes);
+            }
+        };
         let program = translated.program.clone();
         self.check(session, &abscissa.name, &class, &translated)?;
         parameters::note_computed(&class.parameters, &translated, notes);
@@ -239,6 +245,7 @@ impl Source<'_> {
         let name = self.segment.name.clone();
         let mut comparison = Comparison {
             experiment: &name,
+            label: self.label,
             entry: self.entry,
             table: self.table,
             model: &*model,
@@ -277,22 +284,26 @@ impl Source<'_> {
         Ok((experiment, series))
     }
 
-    /// Why the model is not solvable if a variable is set that its equations determine.
-    fn set_variable(&self, session: &mut Session) -> Option<Diagnostic> {
+    /// The experiment with the start values of what it sets that the equations determine; `None` where it
+    /// sets nothing of the kind.
+    fn with_starts(&self, session: &mut Session) -> Option<ExperimentEntry> {
         let flat = simulation::flattened(session, &self.file.model).ok()?.model;
         let is_computed = |name: &&String| {
             let variable = flat.variables.get(name.as_str());
             variable.is_some_and(|own| {
-                own.variability > Variability::Parameter && own.causality.is_none()
+                own.variability > Variability::Parameter
+                    && own.causality != Some(CausalityPrefix::Input)
             })
         };
-        let name = self.entry.set.values.keys().find(is_computed)?;
-        let fault = fault!(
-            BAD_OPTION,
-            "`{name}` is not a parameter of `{}`: its equations determine it", self.file.model;
-            help: "for its value at the begin write `start = {{ {name} = … }}`"
-        );
-        Some(fault.at(self.entry.places.at(&["set", name])))
+        let names: Vec<String> =
+            self.entry.set.values.keys().filter(is_computed).cloned().collect();
+        let mut entry = self.entry.clone();
+        for name in names.iter().filter(|name| !self.entry.start.contains_key(*name)) {
+            let value = entry.set.values.shift_remove(name)?;
+            entry.start.insert(name.clone(), value);
+            entry.places.put(&["start", name], &self.entry.places, &["set", name]);
+        }
+        (entry.set.values.len() < self.entry.set.values.len()).then_some(entry)
     }
 
     /// Refuses names that the model does not have, and values that it cannot be given.
@@ -392,6 +403,7 @@ impl Source<'_> {
             undecided = inputs::inputs(entry, self.table, &times, &flat, &mut enclosing, notes)
                 .map_err(|error| vec![error])?;
         }
+        notes.about(self.table, dynamics::note_short_delays(file, entry, &x.time));
         let mut observed = Vec::new();
         for (y_name, requested) in entry.all_outputs() {
             let place = observed.len();

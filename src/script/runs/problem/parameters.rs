@@ -230,9 +230,30 @@ impl Setting<'_> {
                 Renamed(self.of_deviations).expression(&mut read);
                 Ok(read)
             }
-            None => enclosing_class::value(value, (name, place), declared(types, name)).at(place),
+            None => {
+                let declared = declared(types, name);
+                if let (ValueEntry::Text(text), Some(BaseType::Real | BaseType::Integer)) =
+                    (value, declared.1)
+                {
+                    return Err(not_an_expression(text, name, self.file).at(place));
+                }
+                enclosing_class::value(value, (name, place), declared).at(place)
+            }
         }
     }
+}
+
+/// Why a string is not the value of a number: what it names is not in `[parameters]`.
+fn not_an_expression(text: &str, name: &str, file: &ProblemFile) -> Fault {
+    let unknown = deviation::unknown_in(text, file);
+    let Some(unknown) = unknown else {
+        return fault!(BAD_OPTION, "`{name}` is a number, but its value is \"{text}\"")
+            .help("write a number, or an expression of entries of `[parameters]`");
+    };
+    let known = file.parameters.keys().map(String::as_str);
+    fault!(BAD_OPTION, "the value of `{name}` names `{unknown}`, which is not in `[parameters]`")
+        .help_if(suggest::did_you_mean(&unknown, known))
+        .help(format!("give it a range, `{unknown} = {{ min = 0.1, max = 10 }}`, or a number"))
 }
 
 /// Refuses, before the first simulation, free parameters that a simulation cannot be given.

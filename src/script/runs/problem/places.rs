@@ -47,6 +47,14 @@ impl Places {
         names.iter().try_fold(self, |entry, name| entry.within.get(*name))
     }
 
+    /// Gives an entry of a table the places of another entry.
+    pub(super) fn put(&mut self, [table, name]: &[&str; 2], others: &Places, way: &[&str]) {
+        if let Some(places) = others.within(way) {
+            let table = self.within.entry((*table).to_owned()).or_default();
+            table.within.insert((*name).to_owned(), places.clone());
+        }
+    }
+
     /// The parameter of this name.
     pub(super) fn parameter(&self, name: &str) -> Span {
         self.at(&["parameters", name])

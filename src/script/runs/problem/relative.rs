@@ -10,6 +10,8 @@ use crate::{bail, fault};
 
 /// What is written for a scale or an offset of its own.
 const ESTIMATE: &str = "estimate";
+/// The sign of scales that may be negative.
+const ANY: &str = "any";
 /// The fitness functions of which scales and offsets are the least squares.
 const SQUARES: [&str; 4] = ["sum_of_squares", "rmse", "nrmse", "log_likelihood"];
 const AS_PARAMETER: &str = "make it a parameter of the model, and the scaled output a variable";
@@ -41,7 +43,7 @@ pub(super) fn scaling(
         Some(ScaleEntry::More(ScaleTable { name, sign })) => {
             let any_sign = match sign.as_deref() {
                 None | Some("positive") => false,
-                Some("any") => true,
+                Some(ANY) => true,
                 Some(other) => {
                     bail!(BAD_OPTION, "the sign of the scale of `{y_name}` is `{other}`"; help: "write \"positive\" or \"any\"")
                 }
@@ -113,8 +115,42 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Refuses what scales and offsets cannot be combined with, taken all series together, with the place
-/// of the first one.
+/// Gives all series that share a scale the sign that any of their outputs states.
+///
+/// # Errors
+///
+/// Outputs that state different signs, with the places of both.
+fn agree(file: &ProblemFile, series: &mut [Series]) -> Result<(), Diagnostic> {
+    let mut known: Vec<(String, bool, Span)> = Vec::new();
+    for own in &file.experiment {
+        for (output, column) in &own.outputs {
+            let entry = column.entry();
+            let Some(ScaleEntry::More(ScaleTable { name: Some(name), sign: Some(sign) })) =
+                &entry.scale
+            else {
+                continue;
+            };
+            let (is_any, at) = (sign == ANY, own.places.at(&["outputs", output, "scale", "sign"]));
+            match known.iter().find(|one| one.0 == *name && name != ESTIMATE) {
+                Some((_, other, first)) if *other != is_any => {
+                    let fault = fault!(BAD_OPTION, "the scale `{name}` has two signs");
+                    let words = if is_any { "positive here" } else { "of any sign here" };
+                    let fault = fault.help("outputs that share a scale have one: write one sign");
+                    return Err(fault.at(at).related(*first, words));
+                }
+                _ => known.push((name.clone(), is_any, at)),
+            }
+        }
+    }
+    let scales = series.iter_mut().filter_map(|own| own.scaling.scale.as_mut());
+    for scale in scales {
+        scale.any_sign |= known.iter().any(|(name, is_any, _)| *is_any && *name == scale.name);
+    }
+    Ok(())
+}
+
+/// Gives scales their signs, and refuses what scales and offsets cannot be combined with, taken all series
+/// together, with the place of the first one.
 ///
 /// # Errors
 ///
@@ -122,9 +158,11 @@ pub(super) fn check(
 /// experiments for validation those that no fitted experiment has.
 pub(super) fn check_all(
     file: &ProblemFile,
-    (fitted, logarithmic): (&[Series], &[usize]),
+    (fitted, logarithmic): (&mut [Series], &[usize]),
     kept: &[&Series],
 ) -> Result<(), Diagnostic> {
+    agree(file, fitted)?;
+    let fitted = &*fitted;
     let of_kind = |is_logarithmic: bool| {
         let all = fitted.iter().enumerate();
         let own = all.filter(move |(k, _)| logarithmic.contains(k) == is_logarithmic);

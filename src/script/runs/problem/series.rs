@@ -20,8 +20,10 @@ type WithLimits = (Vec<f64>, Vec<(usize, Law)>);
 
 /// What the outputs of an experiment are compared over.
 pub(super) struct Comparison<'a> {
-    /// The name of the experiment.
+    /// The name of the experiment, or of the part of it.
     pub experiment: &'a str,
+    /// The name of the experiment; its parts share their scales.
+    pub label: &'a str,
     pub entry: &'a ExperimentEntry,
     pub table: &'a MatFile,
     pub model: &'a dyn Model,
@@ -142,7 +144,7 @@ impl Comparison<'_> {
         let table = self.table;
         let column = data::column(table, requested, y_name, notes)?;
         note_suspicious(requested.column.as_deref().unwrap_or(y_name), &column, (table, notes));
-        let scaling = relative::scaling(requested, (self.experiment, y_name))?;
+        let scaling = relative::scaling(requested, (self.label, y_name))?;
         let own_unit = self.unit_of_output(y_name, requested, &column);
         let measured = data::in_unit(&column, y_name, &own_unit, requested, (table, notes))?;
         note_unit_of_sigma(y_name, requested, (&measured, &own_unit.symbol), notes);

@@ -7,6 +7,7 @@ use crate::world::{Files as _, MemoryWorld};
 mod entries;
 mod inference;
 mod laws;
+mod meanings;
 mod stopping;
 mod values;
 

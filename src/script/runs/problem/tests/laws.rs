@@ -217,9 +217,9 @@ fn a_log_normal_prior_can_be_one_of_the_value() {
 /// A given sigma is believed also where others are estimated: their scatter says nothing of it.
 #[test]
 fn given_deviations_stay_beside_estimated_ones() {
-    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n[parameters]\n\
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\n[parameters]\n\
                    p = { min = 0.1, max = 9 }\n[[experiment]]\ndata = \"d.csv\"\n\
-                   outputs = { a = { column = \"a\", sigma = 0.01 } }\n[[experiment]]\n\
+                   outputs = { a = { column = \"a\", sigma = 1 } }\n[[experiment]]\n\
                    data = \"e.csv\"\noutputs = { a = { column = \"a\", sigma = \"estimate\" } }\n";
     let estimated = [0.5, 1.5, 2.0, 1.1];
     let rows = estimated.iter().enumerate().map(|(k, y)| format!("{k},{y}\n"));
@@ -229,10 +229,139 @@ fn given_deviations_stay_beside_estimated_ones() {
         ("d.csv", "time,a\n0,1\n1,1.3\n2,0.8\n".into()),
         ("e.csv", format!("time,a\n{}", rows.collect::<String>())),
     ]);
-    let p = found.parameters[0].value;
-    let square = estimated.iter().map(|y| (y - p).powi(2)).sum::<f64>() / 4.0;
-    // The estimated part has the degrees of freedom of seven points and one parameter.
-    let information = 3.0 / 0.01_f64.powi(2) + 4.0 * (6.0 / 7.0) / square;
-    let (own, expected) = (found.parameters[0].deviation.unwrap(), information.sqrt().recip());
-    assert!((own - expected).abs() < 1e-3 * expected, "{own} {expected}\n{}", found.text());
+    let own = &found.parameters[0];
+    let p = own.value;
+    let variance = estimated.iter().map(|y| (y - p).powi(2)).sum::<f64>() / 4.0;
+    // The estimated variance has four degrees of freedom, less what p follows of its points.
+    let freedom = 4.0 - 4.0 / variance / (3.0 + 4.0 / variance);
+    let unbiased = variance * 4.0 / freedom;
+    let share = 4.0 / unbiased / (3.0 + 4.0 / unbiased);
+    let inflation = 1.0 + 4.0 * share * (1.0 - share) / freedom;
+    let expected = (inflation / (3.0 + 4.0 / unbiased)).sqrt();
+    let near = |own: f64, expected: f64| {
+        assert!((own - expected).abs() < 1e-3 * expected, "{own} {expected}\n{}", found.text());
+    };
+    near(own.deviation.unwrap(), expected);
+    // Satterthwaite's degrees of freedom are 5.27, of which the quantile of Student is 2.5315.
+    near(freedom / share.powi(2), 5.269_834);
+    near(found.likelihood.quantile.unwrap(), 2.531_493);
+    // A new measurement has the given sigma, or the estimated one.
+    for (band, variance) in found.inferred.bands.iter().zip([1.0, unbiased]) {
+        near(band.points[0].confidence.unwrap(), 2.531_493 * expected);
+        near(band.points[0].prediction.unwrap(), 2.531_493 * (expected.powi(2) + variance).sqrt());
+    }
+}
+
+/// The likelihood of given sigmas is that of these, whatever the residuals are, and missing ones are
+/// estimated as they are by default.
+#[test]
+fn the_likelihood_takes_given_sigmas_as_given() {
+    let fit = |fitness: &str, sigma: &str| {
+        let problem = format!(
+            "model = \"M\"\nfiles = [\"M.mo\"]\nbands = false\n{fitness}\n[parameters]\n\
+             p = {{ min = 0.1, max = 9 }}\ns = {{ min = 0.1, max = 9 }}\n[[experiment]]\n\
+             data = \"d.csv\"\noutputs = {{ a = {{ column = \"a\", sigma = 0.5 }}, \
+             deviation = {{ column = \"b\"{sigma} }} }}\n"
+        );
+        let data = "time,a,b\n0,1,3\n1,2,4\n2,3,3.2\n3,2.5,3.7\n".to_owned();
+        solved(&[("p.toml", problem), ("M.mo", MODEL.into()), ("d.csv", data)])
+    };
+    for sigma in [", sigma = 2", ""] {
+        let [usual, likely] = ["", "fitness = \"log_likelihood\""].map(|own| fit(own, sigma));
+        let logs = [&usual, &likely].map(|own| own.likelihood.negative_log_likelihood.unwrap());
+        assert!((logs[0] - logs[1]).abs() < 1e-9, "{logs:?}");
+        assert!((likely.fitness - logs[1]).abs() < 1e-9, "{}", likely.text());
+        for (a, b) in usual.parameters.iter().zip(&likely.parameters) {
+            let [a, b] = [a, b].map(|own| own.deviation.unwrap());
+            assert!((a - b).abs() < 1e-6 * a, "{a} {b}\n{}", likely.text());
+        }
+    }
+}
+
+/// What has as many points as scales of its own has no residuals, whatever the noise is.
+#[test]
+fn a_point_with_a_scale_of_its_own_does_not_deny_the_noise() {
+    let problem = "model = \"Free\"\nfiles = [\"tank.mo\"]\nbands = false\n[parameters]\n\
+                   k = { min = 0.1, max = 5 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                   outputs = { h = \"h\" }\n[[experiment]]\ndata = \"e.csv\"\n\
+                   outputs = { h = { column = \"h\", scale = \"estimate\" } }\n";
+    let noisy = |t: f64| height(t, 1.0, 0.0) + 0.01 * (7.0 * t).sin();
+    let found = solved(&[
+        ("p.toml", problem.into()),
+        ("d.csv", table("time,h", |t| noisy(t).to_string())),
+        ("e.csv", "time,h\n1,30\n".into()),
+    ]);
+    let text = found.text();
+    assert!(found.parameters[0].deviation.is_some(), "{text}");
+    assert!(!text.contains("no noise"), "{text}");
+    assert!(
+        text.contains("The only point of experiment 2 / h would be fitted exactly with any value"),
+        "{text}"
+    );
+}
+
+/// Where one output fits and another does not, the fit is not worse than a constant.
+#[test]
+fn ranges_are_not_blamed_where_a_part_of_the_data_fits() {
+    let problem = "model = \"Free\"\nfiles = [\"tank.mo\"]\nbands = false\n[parameters]\n\
+                   k = { min = 0.1, max = 5 }\ngain = { min = 0.1, max = 5 }\n[[experiment]]\n\
+                   data = \"d.csv\"\n\
+                   outputs = { h = { column = \"h\", sigma = 0.01 }, q = { column = \"q\", sigma = 1 } }\n";
+    let row = |t: f64| {
+        let h = height(t, 1.0, 0.0);
+        format!("{},{}", h + 0.01 * (7.0 * t).sin(), 3.0 + t)
+    };
+    let found = solved(&[("p.toml", problem.into()), ("d.csv", table("time,h,q", row))]);
+    let text = found.text();
+    assert!(text.contains("The fit of experiment 1 / q is worse than a constant"), "{text}");
+    assert!(!text.contains("fit alike") && text.contains("gain has no effect"), "{text}");
+}
+
+const GEL: &str = "model = \"Free\"\nfiles = [\"tank.mo\"]\nbands = false\n[parameters]\n\
+                   k = { min = 0.1, max = 5 }\n[[experiment]]\ndata = \"d.csv\"\n[experiment.outputs]\n";
+
+/// A scale that outputs share has one sign, whichever of them states it.
+#[test]
+fn outputs_that_share_a_scale_share_its_sign() {
+    let rows = table("time,h,p", |t| {
+        let h = -3.0 * height(t, 1.0, 0.0);
+        format!("{},{}", h + 0.01 * (7.0 * t).sin(), h + 0.01 * (5.0 * t).sin())
+    });
+    let any = "h = { column = \"h\", scale = \"gel\" }\n\
+               p = { column = \"p\", scale = { name = \"gel\", sign = \"any\" } }\n";
+    let found = solved(&[("p.toml", format!("{GEL}{any}")), ("d.csv", rows.clone())]);
+    for series in &found.series {
+        let scale = series.scale.as_ref().unwrap().value;
+        assert!((scale + 3.0).abs() < 0.02, "{scale}\n{}", found.text());
+    }
+    let positive = any.replace("\"gel\" }", "{ name = \"gel\", sign = \"positive\" } }");
+    let files = [("p.toml", format!("{GEL}{positive}")), ("d.csv", rows)];
+    let mut session = Session::new(Box::new(world(&files)));
+    let errors = solve(&mut session, Path::new("p.toml"), &RunOptions::default()).err().unwrap();
+    assert!(errors[0].message.contains("the scale `gel` has two signs"), "{}", errors[0].message);
+    assert_eq!(errors[0].labels.len(), 2, "both places");
+}
+
+/// Missing points of replicates are said once, and an estimated deviation that outputs share once.
+#[test]
+fn replicates_and_shared_deviations_are_said_once() {
+    let outputs = "h = { columns = [\"a\", \"b\"], sigma = \"estimate s\" }\n\
+                   p = { column = \"a\", sigma = \"estimate s\" }\n";
+    let data = table("time,a,b", |t| match t {
+        1.0 => ",".into(),
+        2.0 => format!("{},", height(t, 1.0, 0.0)),
+        _ => format!("{},{}", height(t, 1.0, 0.0) + 0.01, height(t, 1.0, 0.0) - 0.01),
+    });
+    let found = solved(&[("p.toml", format!("{GEL}{outputs}")), ("d.csv", data)]);
+    let text = found.text();
+    assert!(
+        text.contains(
+            "3 points of experiment 1 / h have no number and are left out (rows 5, 9); 31 points are \
+             used."
+        ),
+        "{text}"
+    );
+    assert_eq!(text.matches("of experiment 1 / h have no number").count(), 1, "{text}");
+    let sigmas = text.lines().find(|line| line.contains("estimated with the parameters")).unwrap();
+    assert!(sigmas.contains(": s 0.0") && sigmas.ends_with(" (h, p)."), "{sigmas}");
 }

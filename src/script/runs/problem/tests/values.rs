@@ -286,16 +286,6 @@ fn values_that_a_record_keeps_are_refused() {
     says(&kept, &["`own.a` cannot be set to 6", "| 6"]);
 }
 
-#[test]
-fn a_variable_that_equations_determine_is_not_set() {
-    let data = table("time,y", |t| (-0.5 * t).exp().to_string());
-    let head = "model = \"Cell\"\n[parameters]\nk = { min = 0.1, max = 10 }\n";
-    let experiment = "outputs = { x = \"y\" }\n";
-    let refused = found(head, &format!("{experiment}set = {{ x = 1 }}"), &data);
-    says(&refused, &["`x` is not a parameter of `Cell`", "start = { x = ", "| 1"]);
-    value(&found(head, &format!("{experiment}start = {{ x = 1 }}"), &data), "k", 0.5);
-}
-
 /// A parameter that only `set` uses need not be one of the model; one that initial equations determine keeps
 /// their value.
 #[test]
