@@ -133,7 +133,7 @@ fn problem(
 ) -> Result<Vec<(String, String)>, Vec<Diagnostic>> {
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let beside = |name: &str| file.with_file_name(name);
-    let mut reading = |name: &str| read(&beside(name)).map_err(|fault| fault.message);
+    let mut reading = |name: &str| read(&beside(name));
     let found = petab::import(&name, text, &mut reading);
     let own = found.map_err(|refusal| match refusal.file.as_str() {
         "" => vec![placed(session, file, text, refusal)],

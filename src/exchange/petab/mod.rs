@@ -26,6 +26,9 @@ use rows::{Observable, Parameter};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
+/// Fewer points than these have no standard deviation of their own.
+const FEW: usize = 3;
+
 /// A problem as files of this program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Imported {
@@ -103,14 +106,29 @@ impl Problem {
                 return Err(row.wrong("a row above has the same parameter"));
             }
         }
-        let observables: Vec<Observable> =
+        let mut observables: Vec<Observable> =
             tables.observables.iter().map(rows::observable).collect::<Result<_, _>>()?;
+        let (mut conditions, mut mapping) = (tables.conditions, tables.mapping);
+        if tables.language == Language::Sbml {
+            let names = std::mem::take(&mut mapping);
+            for row in conditions.values_mut() {
+                let pairs = table::Row::pairs(row).into_iter();
+                let renamed = |(name, cell): (String, String)| {
+                    (names.get(&name).cloned().unwrap_or(name), cell)
+                };
+                *row = row.made(pairs.map(renamed).collect());
+            }
+            let names = names.into_iter().map(|(id, own)| (id, Expression::name(own))).collect();
+            for own in &mut observables {
+                own.formula = own.formula.substituted(&names);
+                own.noise = own.noise.substituted(&names);
+            }
+        }
         for (place, own) in observables.iter().enumerate() {
             if observables[..place].iter().any(|other| other.id == own.id) {
                 return Err(own.row.wrong("a row above has the same observable"));
             }
         }
-        let conditions = tables.conditions;
         let reader =
             Reader { observables: &observables, parameters: &parameters, conditions: &conditions };
         let measured = reader.read(&tables.measurements)?;
@@ -120,7 +138,7 @@ impl Problem {
             observables,
             measured,
             conditions,
-            mapping: tables.mapping,
+            mapping,
             in_modelica: None,
             extension: None,
         })
@@ -157,10 +175,19 @@ impl Problem {
                 own.insert(scale(output).map_or(0, f64::to_bits));
             }
         }
+        let measured = self.measured.experiments.iter().flat_map(|own| &own.points);
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for point in measured {
+            if let Noise::Estimated(name) = &self.measured.outputs[point.output].noise {
+                *counts.entry(name).or_default() += 1;
+            }
+        }
         let is_alone = |name: &String| {
+            // Of fewer points the bounds of the parameter are the estimate.
+            let is_measured = counts.get(name.as_str()).is_some_and(|count| *count >= FEW);
             let is_one = scales.get(name).is_some_and(|scales| scales.len() == 1);
             let has_prior = self.parameters[name.as_str()].prior.is_some();
-            is_one && !has_prior && !used.contains(name) && !mentioned.contains(name)
+            is_measured && is_one && !has_prior && !used.contains(name) && !mentioned.contains(name)
         };
         let shared: BTreeSet<String> =
             scales.keys().filter(|name| !is_alone(name)).cloned().collect();
@@ -451,7 +478,8 @@ impl Problem {
                 None => "",
             };
             let prior = own.prior.as_ref().map_or(String::new(), |own| format!(", prior = {own}"));
-            _ = writeln!(text, "{name} = {{ min = {min}, max = {max}{scale}{prior} }}");
+            let place = &own.place;
+            _ = writeln!(text, "{name} = {{ min = {min}, max = {max}{scale}{prior} }} # {place}");
         }
     }
 
@@ -481,7 +509,8 @@ impl Problem {
         }
         let set = self.set(row, rest.unwrap_or(row), extended)?;
         if !set.is_empty() {
-            _ = writeln!(text, "set = {{ {} }}", set.join(", "));
+            let place = row.number_of_line();
+            _ = writeln!(text, "set = {{ {} }} # {place}", set.join(", "));
         }
         let (table, entries) = experiment.data(&self.measured.outputs);
         _ = writeln!(text, "[experiment.outputs]");
@@ -503,7 +532,8 @@ impl Problem {
                 (true, true) => ", error = \"loglaplace\"",
             };
             let name = self.variable(output);
-            _ = writeln!(text, "{name} = {{ {columns}, sigma = {sigma}{error} }}");
+            let place = observable.row.number_of_line();
+            _ = writeln!(text, "{name} = {{ {columns}, sigma = {sigma}{error} }} # {place}");
         }
         Ok(table)
     }

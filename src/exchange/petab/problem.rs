@@ -30,7 +30,7 @@ pub(super) enum Language {
 }
 
 /// Gives the text of a file beside the YAML file.
-pub type ReadFile<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
+pub type ReadFile<'a> = &'a mut dyn FnMut(&str) -> Result<String, Fault>;
 
 /// The YAML file, for faults at the places of its entries.
 pub(super) struct File<'a> {
@@ -44,13 +44,27 @@ impl File<'_> {
         entry: Option<&MarkedYaml<'_>>,
         message: impl Into<String>,
     ) -> Refusal {
+        self.refusal(entry, Fault::new(BAD_OPTION, message))
+    }
+
+    /// The text of a file that an entry names.
+    pub(super) fn read(
+        &self,
+        (name, entry): (&str, &MarkedYaml<'_>),
+        read: ReadFile<'_>,
+    ) -> Result<String, Refusal> {
+        let help = "correct the name, or put the file there: names start from the YAML file";
+        read(name).map_err(|fault| self.refusal(Some(entry), fault.help(help)))
+    }
+
+    fn refusal(&self, entry: Option<&MarkedYaml<'_>>, fault: Fault) -> Refusal {
         let place = entry.map_or(0..0, |own| {
             let start = self.offset(own.span.start.index());
             let end = self.offset(own.span.end.index()).max(start);
             let line = self.text[start..end].lines().next().unwrap_or_default();
             start..start + line.trim_end().len()
         });
-        Refusal::new(place, Fault::new(BAD_OPTION, message))
+        Refusal::new(place, fault)
     }
 
     /// Where the character of this number begins.
@@ -98,8 +112,7 @@ pub(super) fn read(
         let message = format!("the problem has {} models; one is supported", models.len());
         return Err(file.wrong(entry, message));
     };
-    let text = read(model)
-        .map_err(|error| file.wrong(Some(place), format!("cannot read `{model}`: {error}")))?;
+    let text = file.read((model, place), read)?;
     let mut all = |own: &MarkedYaml<'_>, key: &str, required: &[&str]| {
         all_rows((file, own), key, required, read)
     };
@@ -139,8 +152,7 @@ pub(super) fn all_rows(
 ) -> Result<Vec<Row>, Refusal> {
     let mut all = Vec::new();
     for (name, place) in names(own, key) {
-        let text = read(name)
-            .map_err(|error| file.wrong(Some(place), format!("cannot read `{name}`: {error}")))?;
+        let text = file.read((name, place), read)?;
         all.extend(rows(name, &text, required)?);
     }
     match all.is_empty() {

@@ -22,6 +22,8 @@ pub(super) struct Parameter {
     pub(super) estimated: bool,
     /// What is known of it, as a problem file has it.
     pub(super) prior: Option<String>,
+    /// Its line, as `file:line`.
+    pub(super) place: String,
 }
 
 /// How an observable is compared with its measurements.
@@ -108,6 +110,7 @@ pub(super) fn parameter(row: &Row) -> Result<Parameter, Refusal> {
         nominal: row.number("nominalValue")?,
         estimated,
         prior,
+        place: row.number_of_line(),
         id,
     })
 }

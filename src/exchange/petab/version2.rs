@@ -19,8 +19,7 @@ pub(super) fn read(
 ) -> Result<Tables, Refusal> {
     required_extensions(file, document)?;
     let (name, language, place) = model(file, document)?;
-    let text = read(&name)
-        .map_err(|error| file.wrong(Some(place), format!("cannot read `{name}`: {error}")))?;
+    let text = file.read((&name, place), read)?;
     let mut rows = |key: &str, required: &[&str], is_needed: bool| {
         let is_there = entry(document, key).is_some();
         match is_there || is_needed {

@@ -363,19 +363,19 @@ fn version_2_has_the_same_fit() {
     let expected = fitted(&here, "p.yaml");
     let yaml = "format_version: 2.0.0\nmodel_files:\n  m:\n    location: m.xml\n    language: sbml\n\
                 parameter_files: [p.tsv]\nobservable_files: [o.tsv]\ncondition_files: [c.tsv]\n\
-                experiment_files: [e.tsv]\nmeasurement_files: [m.tsv]\n";
+                experiment_files: [e.tsv]\nmeasurement_files: [m.tsv]\nmapping_files: [a.tsv]\n";
     let parameters = "parameterId\tlowerBound\tupperBound\tnominalValue\testimate\n\
                       k\t0.01\t100\t1\ttrue\nscale\t0.1\t9\t1\ttrue\nx_high\t0.1\t50\t1\ttrue\n\
                       fixed\t\t\t2\tfalse\n";
     let ln10 = std::f64::consts::LN_10;
     let observables = format!(
         "observableId\tobservableFormula\tnoiseFormula\tnoiseDistribution\tobservablePlaceholders\t\
-         noisePlaceholders\ny\tfactor*x\tdeviation\tnormal\tfactor\tdeviation\n\
-         logarithm\tx\t{}\tlog-normal\t\t\n",
+         noisePlaceholders\ny\tfactor*amount\tdeviation\tnormal\tfactor\tdeviation\n\
+         logarithm\tamount\t{}\tlog-normal\t\t\n",
         0.1 * ln10
     );
-    let conditions = "conditionId\ttargetId\ttargetValue\nlow\tx\tfixed\nlow\tu\t0\n\
-                      high\tx\tx_high\nhigh\tu\t0\nfed\tu\t2\nstarved\tu\t0\n";
+    let conditions = "conditionId\ttargetId\ttargetValue\nlow\tamount\tfixed\nlow\tu\t0\n\
+                      high\tamount\tx_high\nhigh\tu\t0\nfed\tu\t2\nstarved\tu\t0\n";
     let experiments = "experimentId\ttime\tconditionId\nlow\t0\tlow\nhigh\t0\thigh\n\
                        starved\t-inf\tfed\nstarved\t0\tstarved\n";
     let measured = fs::read_to_string(here.path().join("m.tsv")).unwrap();
@@ -395,6 +395,7 @@ fn version_2_has_the_same_fit() {
         ("c.tsv", conditions),
         ("e.tsv", experiments),
         ("m.tsv", &measurements),
+        ("a.tsv", "petabEntityId\tmodelEntityId\namount\tx\n"),
     ]);
     let found = fitted(&here, "p.yaml");
     assert!((found - expected).abs() < 1e-6, "{found} {expected}");
@@ -505,6 +506,7 @@ fn what_is_not_supported_is_refused_at_its_place() {
         ("m.tsv", "scale\t0.01", "scale\t0.01;7", "value for `noiseParameter2_y`", "m.tsv:2"),
         ("p.yaml", "[m.xml]", "[m.xml, n.xml]", "the problem has 2 models", "p.yaml:4:"),
         ("p.yaml", "[o.tsv]", "[q.tsv]", "cannot read `q.tsv`", "p.yaml:6:"),
+        ("p.yaml", "[m.xml]", "[n.xml]", "cannot read `n.xml`: it does not exist", "p.yaml:4:"),
         ("p.yaml", "[o.tsv]", "[o.tsv", "the file is not YAML", "p.yaml:7:"),
         ("c.tsv", "low\tfixed\t0", "low\tfixed\t0\t7", "the cell `7` has no column", "c.tsv:2:"),
         ("c.tsv", "\tx\tu\n", "\tx\tx\n", "there are two columns `x`", "c.tsv:1:"),
@@ -523,7 +525,50 @@ fn what_is_not_supported_is_refused_at_its_place() {
         let (code, out, errors) = gapi(&here, &["import", "p.yaml"]);
         assert_eq!(code, 1, "{out}{errors}");
         assert!(errors.contains(said) && errors.contains(place), "{said} {place}\n{errors}");
+        let unread = errors.matches("cannot read").count();
+        let remedy = "correct the name, or put the file there";
+        assert!(
+            unread == usize::from(errors.contains(remedy)),
+            "said once, with a remedy: {errors}"
+        );
     }
+}
+
+/// Each entry of the problem file names the row that it comes from.
+#[test]
+fn entries_name_the_rows_that_they_come_from() {
+    let here = problem();
+    let (code, out, errors) = gapi(&here, &["import", "p.yaml", "--out", "p"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("p/p.toml")).unwrap();
+    let place = |begin: &str| {
+        let line = text.lines().find(|line| line.starts_with(begin)).unwrap();
+        line.rsplit_once("# ").map(|(_, place)| place.to_owned()).unwrap()
+    };
+    let found = ["k = ", "scale = ", "set = { x_0 = ", "logarithm = "].map(place);
+    assert_eq!(found, ["p.tsv:2", "p.tsv:3", "c.tsv:2", "o.tsv:3"], "{text}");
+}
+
+/// Of one measurement no deviation can be estimated: its parameter is searched within its bounds.
+#[test]
+fn deviations_of_few_measurements_are_parameters() {
+    let here = problem();
+    let change = |file: &str, old: &str, new: &str| {
+        let path = here.path().join(file);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(old), "{old}");
+        fs::write(path, text.replacen(old, new, 1)).unwrap();
+    };
+    change("p.tsv", "k\t", "sd\tlog10\t0.01\t10\t1\t1\nk\t");
+    change("m.tsv", "\t1\t0.03", "\t1\tsd");
+    let (code, out, errors) = gapi(&here, &["identify", "p.yaml", "--out", "fit"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let text = fs::read_to_string(here.path().join("fit/result.json")).unwrap();
+    let result: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let parameters = result["parameters"].as_array().unwrap();
+    let sd = parameters.iter().find(|own| own["name"] == "sd").unwrap();
+    // The measurement is exact.
+    assert!((sd["value"].as_f64().unwrap() - 0.01).abs() < 1e-6, "{sd}");
 }
 
 /// Imports a document of `tests/exchange` with a part of it replaced: what is said, or the model.
