@@ -44,15 +44,20 @@ fn growth(exponent: f64) -> [f64; 2] {
     }
 }
 
-/// The sum of squares of so many points where twice -log L is larger by `rise`.
-pub(crate) fn raised(sum: f64, points: f64, rise: f64) -> f64 {
+/// Twice -log L, but for a constant, where so many points have this sum of squares.
+pub(crate) fn twice_negative_log(sum: f64, points: f64) -> f64 {
     let own = sum / points;
     let largest = elementary::exp(LINEAR);
-    let exponent = match own > largest {
-        true => LINEAR + own / largest - 1.0,
-        false => elementary::ln(own),
-    };
-    points * growth(exponent + rise / points)[0]
+    points
+        * match own > largest {
+            true => LINEAR + own / largest - 1.0,
+            false => elementary::ln(own),
+        }
+}
+
+/// The sum of squares of so many points where twice -log L is larger by `rise`.
+pub(crate) fn raised(sum: f64, points: f64, rise: f64) -> f64 {
+    points * growth((twice_negative_log(sum, points) + rise) / points)[0]
 }
 
 /// The standard deviation of a point, or what else the point is.

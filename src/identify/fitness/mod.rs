@@ -10,7 +10,7 @@ mod robust;
 mod root_mean_square;
 mod sum_of_squares;
 
-pub(crate) use concentrated::{Concentrated, Deviation, raised};
+pub(crate) use concentrated::{Concentrated, Deviation, raised, twice_negative_log};
 pub(crate) use joint::JointGroup;
 pub use joint::Whitening;
 pub use law::Law;

@@ -219,8 +219,11 @@ pub fn limit(
         ErrorModel::Computed => {
             raised(smallest, problem.n_points() as f64, chi_square_quantile(0.95, 1.0))
         }
-        ErrorModel::OneVariance | ErrorModel::Estimated => {
-            smallest * (1.0 + elementary::powi(quantile, 2) / freedom)
+        ErrorModel::OneVariance => smallest * (1.0 + elementary::powi(quantile, 2) / freedom),
+        ErrorModel::Estimated => {
+            let points = problem.n_points() as f64;
+            let rise = points * elementary::ln(1.0 + elementary::powi(quantile, 2) / freedom);
+            raised(smallest, points, rise)
         }
     }
 }

@@ -12,7 +12,7 @@ use super::{
     Statistics, Subject,
 };
 use crate::diag::Fault;
-use crate::fitness::Law;
+use crate::fitness::{Law, twice_negative_log};
 use crate::ga::Mrg32k3a;
 use crate::ga::operators::KINDS;
 use crate::ga::sampling::latin_hypercube;
@@ -160,11 +160,11 @@ impl Solution {
             let limit = statistics.limit_of_squares();
             self.outcome.other_minima = ending::other_minima(&self.outcome.descents, limit);
             if ErrorModel::of(&run.problem).is_likelihood() {
-                // The sums of the descents are N G with N ln G = -2 log L.
                 let n = statistics.residuals.len() as f64;
+                let twice = |sum: f64| twice_negative_log(sum, n);
                 for other in &mut self.outcome.other_minima {
-                    let ratio = other.objective / statistics.searched;
-                    other.objective = best.fitness + 0.5 * n * elementary::ln(ratio);
+                    let rise = twice(other.objective) - twice(statistics.searched);
+                    other.objective = best.fitness + 0.5 * rise;
                 }
             }
         }

@@ -19,7 +19,7 @@ pub(super) mod resolution;
 mod special_functions;
 
 use crate::elementary;
-use crate::fitness::Whitening;
+use crate::fitness::{Whitening, raised};
 use at_bounds::AtBounds;
 pub(crate) use residuals::{ResidualTest, residual_test};
 
@@ -129,12 +129,15 @@ impl Statistics {
     /// likelihood.
     pub(super) fn limit_of_squares(&self) -> f64 {
         let rise = elementary::powi(self.quantile_of_squares(), 2);
-        match self.believed {
-            true if self.error_model == ErrorModel::Computed => {
-                self.searched * elementary::exp(rise / self.residuals.len() as f64)
+        let points = self.residuals.len() as f64;
+        let relative = 1.0 + rise / self.freedom;
+        match (self.error_model, self.believed) {
+            (ErrorModel::Computed, true) => raised(self.searched, points, rise),
+            (ErrorModel::Estimated, _) => {
+                raised(self.searched, points, points * elementary::ln(relative))
             }
-            true => self.searched + rise,
-            false => self.searched * (1.0 + rise / self.freedom),
+            (_, true) => self.searched + rise,
+            (_, false) => self.searched * relative,
         }
     }
 

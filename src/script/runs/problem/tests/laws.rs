@@ -365,3 +365,28 @@ fn replicates_and_shared_deviations_are_said_once() {
     let sigmas = text.lines().find(|line| line.contains("estimated with the parameters")).unwrap();
     assert!(sigmas.contains(": s 0.0") && sigmas.ends_with(" (h, p)."), "{sigmas}");
 }
+
+/// Where other data are missed by many of their deviations, the sum that is searched is not the exponential
+/// of the likelihood: profiles end where the likelihood says so.
+#[test]
+fn profiles_of_estimated_deviations_end_beside_data_that_are_missed() {
+    let data = table("time,h,p", |t| {
+        let h = height(t, 1.0, 0.0);
+        format!("{},{}", h + 0.01 * (7.0 * t).sin(), -h)
+    });
+    let fit = |second: &str| {
+        let problem = format!("{GEL}h = {{ column = \"h\", sigma = \"estimate\" }}\n{second}");
+        let options = RunOptions { profile: true, ..RunOptions::default() };
+        let found = solved_with(&[("p.toml", problem), ("d.csv", data.clone())], &options);
+        let profile = found.profiles.as_ref().unwrap().profiles[0].clone();
+        let half = 0.5 * (profile.interval[1].unwrap() - profile.interval[0].unwrap());
+        (half / found.parameters[0].deviation.unwrap(), found.likelihood.quantile.unwrap())
+    };
+    // Of no positive scale, p says nothing of k.
+    for (second, misses) in
+        [("", false), ("p = { column = \"p\", scale = \"estimate\", sigma = 1e-3 }\n", true)]
+    {
+        let (ratio, quantile) = fit(second);
+        assert!((ratio / quantile - 1.0).abs() < 0.1, "{misses}: {ratio} {quantile}");
+    }
+}
