@@ -85,7 +85,8 @@ impl Builder<'_> {
                 help: "assign it in one algorithm or one when-clause")
             .at(equation.span));
         }
-        if !in_when && self.varies(equation.right) && self.varies_between_events(equation.right) {
+        if !in_when && self.dae.varies(equation.right) && self.varies_between_events(equation.right)
+        {
             return Err(fault!(NOT_DISCRETE,
                 "`{name}` is discrete, but its value can change between events";
                 help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
@@ -94,28 +95,6 @@ impl Builder<'_> {
         }
         self.dae.events.equations.push(equation);
         Ok(())
-    }
-
-    /// Whether an expression varies even where no when-clause acts: between events `pre(v)` is `v`.
-    pub(super) fn varies_between_events(&mut self, e: Expr) -> bool {
-        let initial = self.initial_signal();
-        let initial = self.dae.pool.as_variable(initial);
-        let zero = self.dae.pool.constant(0.0);
-        let mut now = FxHashMap::default();
-        for (of, previous) in &self.scalars.previous {
-            now.insert(*previous, self.dae.pool.variable(*of));
-        }
-        now.extend(initial.map(|variable| (variable, zero)));
-        let between = substitute(&mut self.dae.pool, e, &|v| now.get(&v).copied());
-        self.varies(between)
-    }
-
-    pub(super) fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
-        let live = self.place.in_when;
-        let mut lowering = Lowering::new(self);
-        lowering.loops = loops.clone();
-        lowering.live = live;
-        lowering
     }
 
     /// The conditions of all branches around.
@@ -132,17 +111,9 @@ impl Builder<'_> {
         if self.dae.assertions.len() > from {
             let guard = self.guard();
             match self.place.in_when {
-                true => self.move_assertions(from, guard),
-                false => self.guard_assertions(from, guard),
+                true => self.dae.move_assertions(from, guard),
+                false => self.dae.guard_assertions(from, guard),
             }
-        }
-    }
-
-    /// The value that a variable has where the algorithm stands.
-    pub(super) fn value_now(&mut self, variable: VarId) -> Expr {
-        match self.execution.values.get(&variable) {
-            Some(value) => *value,
-            None => self.dae.pool.variable(variable),
         }
     }
 }

@@ -121,7 +121,7 @@ impl Builder<'_> {
         subscript: Expr,
         span: Span,
     ) -> Result<Vec<AssignedScalar>, Diagnostic> {
-        if self.varies(subscript) {
+        if self.dae.varies(subscript) {
             return Err(fault!(
                 NO_CONSTANT_VALUE,
                 "the subscript of an assignment must be discrete or known at translation"

@@ -291,23 +291,6 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// A value that must have these sizes; a scalar is repeated.
-    pub(super) fn sized(
-        &mut self,
-        e: &Expression,
-        dims: &[usize],
-    ) -> Result<Array<Expr>, Diagnostic> {
-        let array = self.binding_value(e)?.into_array(e.span)?;
-        if array.dims == dims {
-            return Ok(array);
-        }
-        if array.dims.is_empty() {
-            let count = dims.iter().product();
-            return Ok(Array { dims: dims.to_vec(), elements: vec![array.elements[0]; count] });
-        }
-        Err(size_fault(dims, &array.dims).at(e.span))
-    }
-
     fn equation(&mut self, equation: &ast::Equation, loops: &mut Loops) -> Result<(), Diagnostic> {
         if self.dae.equations.len() > MAX_EQUATIONS {
             return Err(
@@ -395,7 +378,7 @@ impl<'a> Builder<'a> {
             if let Some(variable) = self.dae.pool.as_variable(side)
                 && self.dae.variable(variable).kind == VariableKind::Discrete
                 && self.dae.variable(variable).base != BaseType::Real
-                && self.varies(other)
+                && self.dae.varies(other)
             {
                 self.dae.variables[variable.0 as usize].kind = VariableKind::Unknown;
             }
@@ -484,12 +467,12 @@ impl<'a> Builder<'a> {
         self.place.branches += 1;
         let asserted = self.dae.assertions.len();
         let first = self.collect(body, loops)?;
-        self.guard_assertions(asserted, condition);
+        self.dae.guard_assertions(asserted, condition);
         let asserted = self.dae.assertions.len();
         let second = self.if_equation(rest, otherwise, span, loops)?;
         self.place.branches -= 1;
         let not = self.dae.pool.not(condition);
-        self.guard_assertions(asserted, not);
+        self.dae.guard_assertions(asserted, not);
         if first.len() != second.len() {
             return Err(fault!(
                 super::errors::UNBALANCED_MODEL,
@@ -529,22 +512,6 @@ impl<'a> Builder<'a> {
         variable.is_some_and(|v| self.dae.variable(v).base != BaseType::Real)
     }
 
-    /// What is lowered without what it asserts: it may be undone, or need not hold.
-    pub(super) fn without_assertions<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> R {
-        let asserted = self.dae.assertions.len();
-        let result = lower(self);
-        self.dae.assertions.truncate(asserted);
-        result
-    }
-
-    /// Assertions in a branch hold only where it is taken, and are looked at only there.
-    pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
-        let holds = self.dae.pool.constant(1.0);
-        for assertion in self.dae.assertions.iter_mut().skip(from) {
-            assertion.condition = self.dae.pool.if_then_else(condition, assertion.condition, holds);
-        }
-    }
-
     /// The equations of a branch, not yet part of the system.
     pub(super) fn collect(
         &mut self,
@@ -579,7 +546,7 @@ impl<'a> Builder<'a> {
                 let first = self.dae.assertions.len();
                 self.assertion(arguments, call.span, loops)?;
                 if let Some(active) = self.activity_here() {
-                    self.guard_assertions(first, active);
+                    self.dae.guard_assertions(first, active);
                 }
                 Ok(())
             }

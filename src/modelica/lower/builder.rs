@@ -3,8 +3,8 @@
 use super::clocks::Clocks;
 use super::dae::Dae;
 use super::equation::Instance;
-use super::execution::Execution;
-use super::expressions::Lowered;
+use super::execution::{Execution, Loops};
+use super::expressions::{Lowered, Lowering};
 use super::function::{CallResults, Instances};
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
@@ -117,6 +117,23 @@ impl<'a> Builder<'a> {
             clocks: Clocks::default(),
             records: FxHashMap::default(),
         }
+    }
+
+    /// What is lowered without what it asserts: it may be undone, or need not hold.
+    pub(super) fn without_assertions<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> R {
+        let asserted = self.dae.assertions.len();
+        let result = lower(self);
+        self.dae.assertions.truncate(asserted);
+        result
+    }
+
+    /// Lowers what a statement contains.
+    pub(super) fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+        let live = self.place.in_when;
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        lowering.live = live;
+        lowering
     }
 }
 

@@ -1,7 +1,8 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
-use super::equation::{Assertion, Equation};
+use super::equation::{Assertion, Equation, Level};
 use super::events::Events;
+use super::string_part::StringPart;
 use crate::bytecode::Functions;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Experiment, Variability};
@@ -198,6 +199,61 @@ impl Dae {
     /// Whether its value is found by the equations between events.
     pub fn is_unknown(&self, id: VarId) -> bool {
         matches!(self.variable(id).kind, VariableKind::Unknown | VariableKind::Derivative(_))
+    }
+
+    /// Adds a variable that the model does not declare.
+    pub(super) fn declare_variable(&mut self, variable: Variable) -> VarId {
+        let id = VarId(self.variables.len() as u32);
+        self.variables.push(variable);
+        id
+    }
+
+    /// Whether an expression is made of parameters and numbers alone.
+    pub(super) fn is_parametric(&self, a: Expr) -> bool {
+        let varies = |v: VarId| {
+            !matches!(self.variable(v).kind, VariableKind::Parameter { .. } | VariableKind::Solved)
+        };
+        !self.pool.any_variable(a, varies)
+    }
+
+    /// Whether an expression may vary between events.
+    pub(super) fn varies(&self, a: Expr) -> bool {
+        let varies = |v: VarId| {
+            matches!(
+                self.variable(v).kind,
+                VariableKind::Time
+                    | VariableKind::Unknown
+                    | VariableKind::Derivative(_)
+                    | VariableKind::Delayed
+                    | VariableKind::Text
+            )
+        };
+        self.pool.any_variable(a, varies)
+    }
+
+    /// Assertions in a branch hold only where it is taken, and are looked at only there.
+    pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
+        let holds = self.pool.constant(1.0);
+        for assertion in self.assertions.iter_mut().skip(from) {
+            assertion.condition = self.pool.if_then_else(condition, assertion.condition, holds);
+        }
+    }
+
+    /// Assertions read since `from` hold at events, where the guard does.
+    pub(super) fn move_assertions(&mut self, from: usize, guard: Expr) {
+        self.guard_assertions(from, guard);
+        for mut assertion in self.assertions.split_off(from) {
+            if assertion.level == Level::Effect {
+                // Calls are executed only where their statement is.
+                let zero = self.pool.constant(0.0);
+                for part in &mut assertion.parts {
+                    if let StringPart::Numbered(call) = part {
+                        *call = self.pool.if_then_else(assertion.condition, zero, *call);
+                    }
+                }
+            }
+            self.events.assertions.push(assertion);
+        }
     }
 
     /// Whether its value is found by the equations, at events or between them.

@@ -1,6 +1,6 @@
 //! Symbolic evaluation of the statements of algorithms.
 
-use crate::symbolic::{Expr, VarId};
+use crate::symbolic::{Expr, Pool, VarId};
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
 
@@ -22,4 +22,14 @@ pub(super) struct Execution {
     pub(super) assigned: FxHashSet<VarId>,
     /// More than zero where a reference means the variable, not the value it has in an algorithm.
     pub(super) raw: usize,
+}
+
+impl Execution {
+    /// The value that a variable has where the algorithm stands.
+    pub(super) fn value_now(&self, pool: &mut Pool, variable: VarId) -> Expr {
+        match self.values.get(&variable) {
+            Some(value) => *value,
+            None => pool.variable(variable),
+        }
+    }
 }

@@ -388,12 +388,12 @@ impl Domain for Call<'_, '_> {
         let before = self.locals.clone();
         let asserted = self.builder.dae.assertions.len();
         let first = first(self);
-        self.builder.guard_assertions(asserted, condition);
+        self.builder.dae.guard_assertions(asserted, condition);
         let taken = std::mem::replace(&mut self.locals, before);
         let not = self.unary(Unary::Not, condition);
         let asserted = self.builder.dae.assertions.len();
         let second = second(self);
-        self.builder.guard_assertions(asserted, not);
+        self.builder.dae.guard_assertions(asserted, not);
         if (first?, second?) != (Flow::Next, Flow::Next) {
             return Err(fault!(
                 NOT_SUPPORTED,

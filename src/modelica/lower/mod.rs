@@ -10,6 +10,7 @@
 
 mod algorithm;
 mod assigned_variables;
+mod bound_strings;
 mod build;
 mod builder;
 mod calls_of_statements;

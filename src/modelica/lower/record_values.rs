@@ -1,9 +1,9 @@
-//! Bindings that are components of records which functions compute: the function is called once for
-//! all of them.
+//! The values of bindings. Of components of records which functions compute, the function is called
+//! once for all of them.
 
 use super::builder::Builder;
-use super::expressions::{Lowered, Lowering, field_of};
-use crate::diag::Diagnostic;
+use super::expressions::{Array, Lowered, Lowering, field_of, size_fault};
+use crate::diag::{At, Diagnostic};
 use crate::symbolic::Expr;
 use crate::syntax::ast::{Expression, ExpressionKind};
 
@@ -23,5 +23,22 @@ impl Builder<'_> {
             self.records.insert(at, value);
         }
         field_of(&self.records[&at], name, binding.span).cloned()
+    }
+
+    /// A value that must have these sizes; a scalar is repeated.
+    pub(super) fn sized(
+        &mut self,
+        e: &Expression,
+        dims: &[usize],
+    ) -> Result<Array<Expr>, Diagnostic> {
+        let array = self.binding_value(e)?.into_array(e.span)?;
+        if array.dims == dims {
+            return Ok(array);
+        }
+        if array.dims.is_empty() {
+            let count = dims.iter().product();
+            return Ok(Array { dims: dims.to_vec(), elements: vec![array.elements[0]; count] });
+        }
+        Err(size_fault(dims, &array.dims).at(e.span))
     }
 }

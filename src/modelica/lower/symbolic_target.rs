@@ -72,7 +72,7 @@ impl Operations for Builder<'_> {
         if live || equality || self.as_constant(relation).is_some() {
             return relation;
         }
-        if !self.varies(a) && !self.varies(b) {
+        if !self.dae.varies(a) && !self.dae.varies(b) {
             return relation;
         }
         if let Some(split) = self.split_extremum(operator, (a, b), span) {
@@ -105,7 +105,7 @@ impl Operations for Builder<'_> {
         span: Span,
     ) -> Result<Expr, Diagnostic> {
         let may_jump = function.get().event_generating && !live;
-        match may_jump && arguments.iter().any(|a| self.varies(*a)) {
+        match may_jump && arguments.iter().any(|a| self.dae.varies(*a)) {
             true => self.rounding_function(function, arguments, span),
             false => Ok(self.dae.pool.apply(function, arguments)),
         }
@@ -117,7 +117,7 @@ impl Operations for Builder<'_> {
         position: Expr,
         span: Span,
     ) -> Result<Expr, Diagnostic> {
-        if self.varies(position) || elements.is_empty() {
+        if self.dae.varies(position) || elements.is_empty() {
             return Err(fault!(NO_CONSTANT_VALUE,
                 "this subscript must be known at translation, or be discrete";
                 help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
@@ -160,13 +160,13 @@ impl ConditionalValues for Builder<'_> {
 
     fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
         branch.values = values.to_vec();
-        self.guard_assertions(branch.asserted, branch.condition);
+        self.dae.guard_assertions(branch.asserted, branch.condition);
         branch.asserted = self.dae.assertions.len();
     }
 
     fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
         let not = self.dae.pool.not(branch.condition);
-        self.guard_assertions(branch.asserted, not);
+        self.dae.guard_assertions(branch.asserted, not);
         let pairs = branch.values.iter().zip(values);
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }
@@ -194,7 +194,9 @@ impl VariableReferences for Builder<'_> {
                 VariableKind::Discrete if self.execution.raw > 0 => {
                     Lowered::Numbered(self.dae.pool.variable(first))
                 }
-                VariableKind::Discrete => Lowered::Numbered(self.value_now(first)),
+                VariableKind::Discrete => {
+                    Lowered::Numbered(self.execution.value_now(&mut self.dae.pool, first))
+                }
                 _ => Lowered::Text(self.text(position)),
             });
         }
@@ -375,7 +377,7 @@ impl TimeOperators for Builder<'_> {
 impl Builder<'_> {
     /// `der(a)`
     pub(super) fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        if self.is_parametric(a) {
+        if self.dae.is_parametric(a) {
             return Ok(self.dae.pool.constant(0.0));
         }
         let Some(variable) = self.dae.pool.as_variable(a) else {
@@ -383,59 +385,6 @@ impl Builder<'_> {
         };
         let derivative = self.derivative_variable(variable, span)?;
         Ok(self.dae.pool.variable(derivative))
-    }
-
-    /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
-    pub(super) fn text(&mut self, position: usize) -> Arc<str> {
-        match self.bound_strings(position) {
-            Some(Lowered::Text(text)) => text,
-            _ => UNKNOWN_TEXT.into(),
-        }
-    }
-
-    /// The Strings that an array is bound to, as far as they are known.
-    fn string_array(&mut self, position: usize) -> StringArray {
-        let dims = self.flat.variables[position].dims.clone();
-        match self.bound_strings(position) {
-            Some(Lowered::Strings(strings)) if strings.dims == dims => strings,
-            Some(Lowered::Text(text)) => StringArray::filled(dims, text),
-            _ => StringArray::unknown(dims),
-        }
-    }
-
-    /// The value that a String variable is bound to; `None` if it depends on itself or is not to
-    /// be had.
-    fn bound_strings(&mut self, position: usize) -> Option<Lowered<Expr>> {
-        let flat = self.flat;
-        let variable = &flat.variables[position];
-        let binding = match &variable.binding {
-            Some(binding) => binding,
-            // A parameter without a value has its start value (MLS §8.6).
-            None if variable.variability <= Variability::Parameter => {
-                &variable.attributes.get("start")?.value
-            }
-            None => return None,
-        };
-        if self.scalars.folding[position] == Folding::InProgress {
-            return None;
-        }
-        let before = std::mem::replace(&mut self.scalars.folding[position], Folding::InProgress);
-        let lowered = Lowering::new(self).lower(binding);
-        self.scalars.folding[position] = before;
-        lowered.map_err(|why| self.warn_of_missing_string(position, why)).ok()
-    }
-
-    fn warn_of_missing_string(&mut self, position: usize, why: Diagnostic) {
-        let Some((name, variable)) = self.flat.variables.get_index(position) else { return };
-        let is_run_later = [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&why.code);
-        if is_run_later || variable.variability > Variability::Parameter {
-            return;
-        }
-        let message = format!("`{name}` has no value: {}", why.message);
-        let warning = why.reworded(message).warning();
-        if !self.scalars.missing_strings.contains(&warning) {
-            self.scalars.missing_strings.push(warning);
-        }
     }
 
     /// One of the elements, the first of which has the position `first`: by halves.
@@ -463,32 +412,6 @@ impl Builder<'_> {
             let parts = vec![StringPart::Text(message)];
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         }
-    }
-
-    /// Whether an expression is made of parameters and numbers alone.
-    pub(super) fn is_parametric(&self, a: Expr) -> bool {
-        let varies = |v: VarId| {
-            !matches!(
-                self.dae.variable(v).kind,
-                VariableKind::Parameter { .. } | VariableKind::Solved
-            )
-        };
-        !self.dae.pool.any_variable(a, varies)
-    }
-
-    /// Whether an expression may vary between events.
-    pub(super) fn varies(&self, a: Expr) -> bool {
-        let varies = |v: VarId| {
-            matches!(
-                self.dae.variable(v).kind,
-                VariableKind::Time
-                    | VariableKind::Unknown
-                    | VariableKind::Derivative(_)
-                    | VariableKind::Delayed
-                    | VariableKind::Text
-            )
-        };
-        self.dae.pool.any_variable(a, varies)
     }
 
     /// `abs(e) < w`, `max(e, f) > w`, … of time and parameters as relations of `e`, `-e` and `f`: these
@@ -597,7 +520,7 @@ impl Builder<'_> {
         match self.dae.variables[id as usize].kind {
             VariableKind::Constant(value) => self.dae.pool.constant(value),
             _ if self.execution.raw > 0 => self.dae.pool.variable(VarId(id)),
-            _ => self.value_now(VarId(id)),
+            _ => self.execution.value_now(&mut self.dae.pool, VarId(id)),
         }
     }
 

@@ -61,7 +61,7 @@ impl Builder<'_> {
 
     /// `pre(a)`: the value of a variable before the event iteration in progress.
     pub(super) fn previous(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        if self.is_parametric(a) {
+        if self.dae.is_parametric(a) {
             return Ok(a);
         }
         let variable = self.dae.pool.as_variable(a);
@@ -91,7 +91,7 @@ impl Builder<'_> {
         );
         variable.base = source.base.clone();
         variable.variability = Variability::Discrete;
-        let id = self.declare_scalar(variable);
+        let id = self.dae.declare_variable(variable);
         self.scalars.previous.insert(of, id);
         id
     }
@@ -121,7 +121,7 @@ impl Builder<'_> {
 
     fn now(&mut self, v: Expr) -> Expr {
         match self.dae.pool.as_variable(v) {
-            Some(variable) => self.value_now(variable),
+            Some(variable) => self.execution.value_now(&mut self.dae.pool, variable),
             None => v,
         }
     }
@@ -129,14 +129,14 @@ impl Builder<'_> {
     /// A Boolean as a discrete variable, so that it has a previous value.
     pub(super) fn condition(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
         let known = self.dae.pool.as_variable(b).map(|v| self.dae.variable(v).kind);
-        if known == Some(VariableKind::Discrete) || self.is_parametric(b) {
+        if known == Some(VariableKind::Discrete) || self.dae.is_parametric(b) {
             return Ok(b);
         }
         if let Some(variable) = self.scalars.conditions.get(&b) {
             return Ok(self.dae.pool.variable(*variable));
         }
         // Relations in when-clauses before it are evaluated at their events alone.
-        if self.varies(b) && self.varies_between_events(b) {
+        if self.dae.varies(b) && self.varies_between_events(b) {
             return Err(fault!(NOT_DISCRETE, "this condition can change between events";
                 help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
                `noEvent` or inside functions")
@@ -146,11 +146,25 @@ impl Builder<'_> {
         let mut variable = scalar_of_nothing(&name, VariableKind::Discrete, span);
         variable.base = BaseType::Boolean;
         variable.variability = Variability::Discrete;
-        let id = self.declare_scalar(variable);
+        let id = self.dae.declare_variable(variable);
         self.scalars.conditions.insert(b, id);
         let left = self.dae.pool.variable(id);
         self.dae.events.equations.push(Equation::new(left, b, span));
         Ok(left)
+    }
+
+    /// Whether an expression varies even where no when-clause acts: between events `pre(v)` is `v`.
+    pub(super) fn varies_between_events(&mut self, e: Expr) -> bool {
+        let initial = self.initial_signal();
+        let initial = self.dae.pool.as_variable(initial);
+        let zero = self.dae.pool.constant(0.0);
+        let mut now = FxHashMap::default();
+        for (of, previous) in &self.scalars.previous {
+            now.insert(*previous, self.dae.pool.variable(*of));
+        }
+        now.extend(initial.map(|variable| (variable, zero)));
+        let between = substitute(&mut self.dae.pool, e, &|v| now.get(&v).copied());
+        self.dae.varies(between)
     }
 
     /// 1 during initialization.
@@ -176,7 +190,7 @@ impl Builder<'_> {
         let mut variable = scalar_of_nothing(name, VariableKind::Signal, Span::NONE);
         variable.base = BaseType::Boolean;
         variable.variability = Variability::Discrete;
-        self.declare_scalar(variable)
+        self.dae.declare_variable(variable)
     }
 
     /// `sample(start, interval)`
@@ -206,7 +220,7 @@ impl Builder<'_> {
         since_start: bool,
         span: Span,
     ) -> Result<Expr, Diagnostic> {
-        if !self.is_parametric(start) || !self.is_parametric(interval) {
+        if !self.dae.is_parametric(start) || !self.dae.is_parametric(interval) {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "start and interval of `sample` must depend only on parameters"
@@ -236,10 +250,10 @@ impl Builder<'_> {
         longest: Option<Expr>,
         span: Span,
     ) -> Result<Expr, Diagnostic> {
-        if !self.is_parametric(time) {
+        if !self.dae.is_parametric(time) {
             return self.variable_delay(argument, time, longest, span);
         }
-        if self.is_parametric(argument) {
+        if self.dae.is_parametric(argument) {
             return Ok(argument);
         }
         let same = |d: &&Delay| d.argument == argument && d.time == time;
@@ -256,7 +270,8 @@ impl Builder<'_> {
         let parts = vec![StringPart::Text(message)];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);
-        let variable = self.declare_scalar(scalar_of_nothing(&name, VariableKind::Delayed, span));
+        let variable =
+            self.dae.declare_variable(scalar_of_nothing(&name, VariableKind::Delayed, span));
         self.dae.events.delays.push(Delay { variable, argument, time, span });
         Ok(self.dae.pool.variable(variable))
     }
@@ -297,7 +312,7 @@ impl Builder<'_> {
         let name = format!("$floor[{}]", roundings.len() + 1);
         let mut variable = scalar_of_nothing(&name, VariableKind::Frozen, span);
         variable.variability = Variability::Discrete;
-        let variable = self.declare_scalar(variable);
+        let variable = self.dae.declare_variable(variable);
         self.dae.events.roundings.push(Rounding { variable, argument, span });
         self.dae.pool.variable(variable)
     }
@@ -320,13 +335,6 @@ impl Builder<'_> {
     fn remainder(&mut self, x: Expr, quotient: Expr, y: Expr) -> Expr {
         let multiple = self.dae.pool.mul(quotient, y);
         self.dae.pool.sub(x, multiple)
-    }
-
-    /// Adds a variable of the system that the model does not declare.
-    pub(super) fn declare_scalar(&mut self, variable: super::dae::Variable) -> VarId {
-        let id = VarId(self.dae.variables.len() as u32);
-        self.dae.variables.push(variable);
-        id
     }
 }
 

@@ -29,14 +29,14 @@ impl Builder<'_> {
                 help: "write it as the third argument: `delay(expression, time, longest)`")
             .at(span));
         };
-        if !self.is_parametric(longest) {
+        if !self.dae.is_parametric(longest) {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "the longest delay of `delay` must depend on parameters only"
             )
             .at(span));
         }
-        if self.is_parametric(argument) {
+        if self.dae.is_parametric(argument) {
             return Ok(argument);
         }
         let known = self.dae.events.transports.iter().find_map(|transport| match transport {
@@ -100,7 +100,7 @@ impl Builder<'_> {
                 help: "give as many values as points, and at least those at 0 and 1")
             .at(span));
         }
-        if !points.iter().chain(&values).all(|e| self.is_parametric(*e)) {
+        if !points.iter().chain(&values).all(|e| self.dae.is_parametric(*e)) {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "initial points and values of `spatialDistribution` must depend on parameters only"
@@ -117,7 +117,7 @@ impl Builder<'_> {
 
     fn transported(&mut self, span: Span) -> VarId {
         let name = format!("$transported[{}]", self.dae.variables.len());
-        self.declare_scalar(scalar_of_nothing(&name, VariableKind::Delayed, span))
+        self.dae.declare_variable(scalar_of_nothing(&name, VariableKind::Delayed, span))
     }
 
     fn require(&mut self, operator: RelationOperator, a: Expr, b: Expr, message: &str, span: Span) {

@@ -177,7 +177,7 @@ impl Builder<'_> {
                     return Err(fault!(NOT_SUPPORTED, "`connect` inside `when`").at(equation.span));
                 }
             }
-            self.move_assertions(before, guard);
+            self.dae.move_assertions(before, guard);
         }
         Ok(())
     }
@@ -275,24 +275,7 @@ impl Builder<'_> {
     pub(super) fn move_to_start(&mut self, from: usize) {
         if self.dae.assertions.len() > from {
             let guard = self.initial_signal();
-            self.move_assertions(from, guard);
-        }
-    }
-
-    /// Assertions read since `from` hold at events, where the guard does.
-    pub(super) fn move_assertions(&mut self, from: usize, guard: Expr) {
-        self.guard_assertions(from, guard);
-        for mut assertion in self.dae.assertions.split_off(from) {
-            if assertion.level == Level::Effect {
-                // Calls are executed only where their statement is.
-                let zero = self.dae.pool.constant(0.0);
-                for part in &mut assertion.parts {
-                    if let StringPart::Numbered(call) = part {
-                        *call = self.dae.pool.if_then_else(assertion.condition, zero, *call);
-                    }
-                }
-            }
-            self.dae.events.assertions.push(assertion);
+            self.dae.move_assertions(from, guard);
         }
     }
 

@@ -48,7 +48,7 @@ impl Builder<'_> {
             });
             let first = self.dae.assertions.len();
             self.dae.assertions.push(assertion);
-            self.move_assertions(first, ticks.active(sub));
+            self.dae.move_assertions(first, ticks.active(sub));
         }
         self.drop_clocked_relations(&partitions);
         self.replace_operators(&values);

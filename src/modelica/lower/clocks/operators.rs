@@ -176,7 +176,7 @@ impl Builder<'_> {
                 variable.kind = VariableKind::Clock;
             }
         }
-        let variable = self.declare_scalar(variable);
+        let variable = self.dae.declare_variable(variable);
         self.clocks.occurrences.push(Occurrence { variable, operator, span });
         self.dae.pool.variable(variable)
     }
@@ -196,7 +196,7 @@ impl Builder<'_> {
     }
 
     fn held(&mut self, u: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        if self.is_parametric(u) {
+        if self.dae.is_parametric(u) {
             return Ok(u);
         }
         let of = self.variable_for(u, "$held", span);
@@ -205,7 +205,7 @@ impl Builder<'_> {
 
     fn previous_of_clocked(&mut self, u: Expr, span: Span) -> Result<Expr, Diagnostic> {
         self.execution.raw -= usize::from(self.execution.raw > 0);
-        if self.is_parametric(u) {
+        if self.dae.is_parametric(u) {
             return Ok(u);
         }
         let Some(of) = self.dae.pool.as_variable(u) else {
@@ -224,7 +224,7 @@ impl Builder<'_> {
         conversion: Conversion,
         span: Span,
     ) -> Result<Expr, Diagnostic> {
-        if self.is_parametric(u) && !self.is_clock_expression(u) {
+        if self.dae.is_parametric(u) && !self.is_clock_expression(u) {
             return Ok(u);
         }
         let of = match self.is_clock_expression(u) {
@@ -342,7 +342,7 @@ impl Builder<'_> {
     }
 
     fn real_clock(&mut self, interval: Expr, span: Span) -> Result<Base, Diagnostic> {
-        if self.is_parametric(interval) {
+        if self.dae.is_parametric(interval) {
             return Ok(Base::Real(interval));
         }
         match self.dae.pool.as_variable(interval) {
@@ -419,11 +419,11 @@ impl Builder<'_> {
         let number = self.dae.variables.len();
         let mut variable =
             scalar_of_nothing(&format!("{name}[{number}]"), VariableKind::Unknown, span);
-        if !is_real(&self.dae, e) && !self.varies(e) {
+        if !is_real(&self.dae, e) && !self.dae.varies(e) {
             variable.kind = VariableKind::Discrete;
             variable.base = if self.is_boolean(e) { BaseType::Boolean } else { BaseType::Integer };
         }
-        let variable = self.declare_scalar(variable);
+        let variable = self.dae.declare_variable(variable);
         let left = self.dae.pool.variable(variable);
         self.clocks.equations.push(Equation::new(left, e, span));
         variable

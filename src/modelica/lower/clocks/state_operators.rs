@@ -58,7 +58,7 @@ impl Builder<'_> {
         let mut variable = scalar_of_nothing(name, VariableKind::Discrete, span);
         (variable.base, variable.variability) = (base, Variability::Discrete);
         variable.start = Some(self.dae.pool.constant(0.0));
-        self.declare_scalar(variable)
+        self.dae.declare_variable(variable)
     }
 
     /// The state in which the instance of an equation lies.

@@ -74,7 +74,7 @@ impl Builder<'_> {
             scalar_of_nothing(&format!("{name}[{number}]"), VariableKind::Discrete, span);
         variable.base = base;
         variable.variability = Variability::Discrete;
-        let id = self.declare_scalar(variable);
+        let id = self.dae.declare_variable(variable);
         (id, self.dae.pool.variable(id))
     }
 

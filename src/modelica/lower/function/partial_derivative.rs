@@ -36,7 +36,8 @@ pub(super) fn call(
             return Err(fault!(ARRAY_MISMATCH, "`{}` must be a scalar", input.name).at(span));
         };
         let name = format!("$partial[{}]", builder.dae.variables.len());
-        let variable = builder.declare_scalar(scalar_of_nothing(&name, VariableKind::Signal, span));
+        let variable =
+            builder.dae.declare_variable(scalar_of_nothing(&name, VariableKind::Signal, span));
         given.push((input.name, variable, *value));
         *value = builder.dae.pool.variable(variable);
     }
