@@ -2,13 +2,13 @@
 //! where they must be (MLS §8.3, §8.6).
 
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
-use super::flat_expression::literal;
 use super::instantiate::instance::MemberState;
 use super::{FlatModel, Part};
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, ValueType};
 use crate::fault;
 use crate::flatten::expressions::local::Local;
+use crate::flatten::expressions::loops::MAX_EQUATIONS;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
@@ -21,11 +21,8 @@ use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
 use crate::syntax::visit::Visit;
-use crate::value::{ArrayValue, Elements, Value};
+use crate::value::Value;
 use std::sync::Arc;
-
-/// The most equations that loops are unrolled to.
-const MAX_EQUATIONS: usize = 5_000_000;
 
 impl Instantiation<'_> {
     /// Adds the equations and algorithms of a node and of all below it.
@@ -299,69 +296,6 @@ impl Instantiation<'_> {
         self.with_ranges(indices, context, local, &visit)
     }
 
-    /// What the body of a loop knows in each of its iterations.
-    pub fn iterations(
-        &mut self,
-        indices: &[ForIndex],
-        context: ScopeId,
-        local: &Local,
-        out: &mut Vec<Local>,
-    ) -> Result<(), Diagnostic> {
-        let span = indices.first().map(|index| index.name.span);
-        self.each_iteration(indices, context, local, &mut |_, iteration| {
-            out.push(iteration.clone());
-            match span {
-                Some(span) if out.len() > MAX_EQUATIONS => {
-                    let fault =
-                        fault!(super::errors::TOO_LARGE, "the loop has too many iterations");
-                    Err(fault.at(span))
-                }
-                _ => Ok(()),
-            }
-        })
-    }
-
-    /// Visits a loop's body with what it knows in each of its iterations.
-    fn each_iteration(
-        &mut self,
-        indices: &[ForIndex],
-        context: ScopeId,
-        local: &Local,
-        visit: &mut dyn FnMut(&mut Self, &Local) -> Result<(), Diagnostic>,
-    ) -> Result<(), Diagnostic> {
-        let Some((index, inner)) = indices.split_first() else { return visit(self, local) };
-        let span = index.name.span;
-        let range = index.range.as_ref().ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "the range of `{}` is unknown", index.name.node;
-                help: "write the range of the loop, such as `1:n`")
-            .at(span)
-        })?;
-        let resolved = match self.classes.type_range(range, context, local)? {
-            Some(values) => values,
-            None => self.resolve(range, context, local)?,
-        };
-        let mut iteration = local.clone();
-        for value in self.range_values(&resolved)? {
-            iteration.names.push((index.name.node, Some(literal(&value, span))));
-            self.each_iteration(inner, context, &iteration, visit)?;
-            iteration.names.pop();
-        }
-        Ok(())
-    }
-
-    pub(crate) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
-        match self.flat_value(range)? {
-            Value::Array(ArrayValue { dims, elements, .. }) if dims.len() == 1 => {
-                Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
-            }
-            other => {
-                let found = other.type_name();
-                Err(fault!(TYPE_MISMATCH, "a loop needs a vector as its range, got {found}")
-                    .at(range.span))
-            }
-        }
-    }
-
     /// Branches of equal size whose conditions are not fixed at translation stay; otherwise the
     /// branch is chosen now (MLS §8.3.4). `None` if the chosen equations were added already.
     fn if_equation(
@@ -420,15 +354,6 @@ impl Instantiation<'_> {
             }
         }
         Ok(Some(None))
-    }
-
-    /// Whether an expression has a value at translation: no variable but constants and
-    /// parameters, no operator of time.
-    pub fn is_fixed(&mut self, resolved: &Expression) -> bool {
-        let read = std::mem::take(&mut self.values.read);
-        let fixed = self.known_flat_value(resolved).is_ok();
-        self.values.read = read;
-        fixed
     }
 }
 

@@ -38,6 +38,7 @@ mod types;
 mod units;
 mod unknown;
 mod variables;
+mod warnings;
 
 pub use balance::LocalBalance;
 pub use declared::{Declared, Member};
@@ -183,7 +184,7 @@ fn flattened(
     let signals = instantiation.classes.own_signals(root).map_err(one)?;
     let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
     let unit_warnings = instantiation.classes.unit_warnings(&model);
-    let mut warnings = instantiation.warnings;
+    let mut warnings = instantiation.warnings.into_all();
     let notes = instantiation.values.outside.notes().into_iter();
     warnings.extend(notes.map(|note| note.at(Span::NONE).note()));
     for (name, function) in instantiation.functions.table {

@@ -2,9 +2,12 @@
 //! variables whose values are not known at translation.
 
 use super::balance::path;
+use super::errors::SIZE_MISMATCH;
+use super::flat_expression::picked;
 use super::lookup::modification::Bound;
 use crate::diag::Diagnostic;
 use crate::eval::Function;
+use crate::fault;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::MemberState;
@@ -24,6 +27,37 @@ impl Instantiation<'_> {
         let local = Local { impure: true, ..Local::default() };
         let resolved = self.resolve(&value, bound.context, &local)?;
         Ok(self.shape_of(&resolved))
+    }
+
+    /// The part of a value that belongs to one element of an array of components; without `each` the
+    /// value must be an array (MLS §7.2.5). One value is that of every element, with a warning:
+    /// libraries forget the word.
+    pub(crate) fn part_of(
+        &mut self,
+        value: &Expression,
+        bound: &Bound,
+    ) -> Result<Expression, Diagnostic> {
+        let required = bound.indices.len();
+        let is_array = matches!(value.kind, ExpressionKind::Array(_));
+        if required == 0 || is_array && required == 1 {
+            return Ok(picked(value.clone(), &bound.indices));
+        }
+        let local = Local { impure: true, ..Local::default() };
+        let whole = self.resolve(value, bound.context, &local)?;
+        let Some(found) = self.types().rank_of(&whole).filter(|found| *found < required) else {
+            return Ok(picked(value.clone(), &bound.indices));
+        };
+        let error = fault!(
+            SIZE_MISMATCH,
+            "a modifier of an array of components needs a value with at least {required} \
+             dimensions, not {found}";
+            help: "write `each` before the modifier to give every element the same value")
+        .at(value.span);
+        if found > 0 || self.classes.library.is_strict() {
+            return Err(error);
+        }
+        self.warnings.add_once(error);
+        Ok(value.clone())
     }
 
     /// The sizes of an array of components that are not variables and have no value.
@@ -105,6 +139,15 @@ impl Instantiation<'_> {
     /// The sizes of a resolved expression; `None` where its text does not tell them.
     pub(crate) fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
         inference::sizes_of(self, e).and_then(inference::all_known)
+    }
+
+    /// The sizes that a resolved expression has beyond so many dimensions, if it has more.
+    pub(crate) fn surplus_sizes(&mut self, e: &Expression, expected: usize) -> Option<Vec<usize>> {
+        if self.types().rank_of(e).is_some_and(|rank| rank <= expected) {
+            return None;
+        }
+        let dims = self.shape_of(e)?;
+        (dims.len() > expected).then(|| dims[..dims.len() - expected].to_vec())
     }
 
     /// The sizes of an element that is computed for every value of iterators.

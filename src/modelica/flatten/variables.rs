@@ -199,7 +199,7 @@ impl Instantiation<'_> {
             && variable.variability == Variability::Constant
             && let Ok(known) = self.flat_value(&value)
         {
-            self.warn_once(error);
+            self.warnings.add_once(error);
             return Ok(literal(&known, value.span));
         }
         Err(error)
@@ -243,46 +243,7 @@ impl Instantiation<'_> {
     }
 }
 
-impl Instantiation<'_> {
-    /// The part of a value that belongs to one element of an array of components; without `each` the
-    /// value must be an array (MLS §7.2.5). One value is that of every element, with a warning:
-    /// libraries forget the word.
-    pub(crate) fn part_of(
-        &mut self,
-        value: &Expression,
-        bound: &Bound,
-    ) -> Result<Expression, Diagnostic> {
-        let required = bound.indices.len();
-        let is_array = matches!(value.kind, ExpressionKind::Array(_));
-        if required == 0 || is_array && required == 1 {
-            return Ok(picked(value.clone(), &bound.indices));
-        }
-        let local = Local { impure: true, ..Local::default() };
-        let whole = self.resolve(value, bound.context, &local)?;
-        let Some(found) = self.types().rank_of(&whole).filter(|found| *found < required) else {
-            return Ok(picked(value.clone(), &bound.indices));
-        };
-        let error = fault!(
-            SIZE_MISMATCH,
-            "a modifier of an array of components needs a value with at least {required} \
-             dimensions, not {found}";
-            help: "write `each` before the modifier to give every element the same value")
-        .at(value.span);
-        if found > 0 || self.classes.library.is_strict() {
-            return Err(error);
-        }
-        self.warn_once(error);
-        Ok(value.clone())
-    }
-
-    /// A warning, unless the same was given at the same place.
-    pub(crate) fn warn_once(&mut self, error: Diagnostic) {
-        let is_known = |one: &Diagnostic| one.code == error.code && one.span() == error.span();
-        if !self.warnings.iter().any(is_known) {
-            self.warnings.push(error.warning());
-        }
-    }
-}
+impl Instantiation<'_> {}
 
 /// An element of a resolved value that is an array.
 fn element_of(whole: &Expression, indices: &[usize]) -> Expression {

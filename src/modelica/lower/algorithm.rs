@@ -23,11 +23,10 @@ use crate::execute::{self, Branches, Decision, Domain, Done, Executed, Flow, Ite
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::source::Span;
-use crate::symbolic::{Expr, Pool, VarId, substitute};
+use crate::symbolic::{Expr, Pool, VarId};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
-use rustc_hash::FxHashMap;
 
 impl Builder<'_> {
     /// Adds the equations of an algorithm section.

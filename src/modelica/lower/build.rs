@@ -8,7 +8,7 @@ use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
 };
 use super::execution::Loops;
-use super::expressions::{Array, Lowered, Lowering, size_fault};
+use super::expressions::{Lowered, Lowering, size_fault};
 use super::function::Inverts;
 use super::loops::LoopVariable;
 use crate::diag::{Diagnostic, suggest};

@@ -3,7 +3,7 @@
 
 use super::builder::Builder;
 use super::expressions::{Array, Lowered, Lowering, field_of, size_fault};
-use crate::diag::{At, Diagnostic};
+use crate::diag::Diagnostic;
 use crate::symbolic::Expr;
 use crate::syntax::ast::{Expression, ExpressionKind};
 

@@ -2,16 +2,14 @@
 
 use super::build::derivative_of;
 use super::build::scalar_of_nothing;
-use super::builder::{Builder, Folding};
+use super::builder::Builder;
 use super::dae::{Homotopy, Relation, VariableKind};
 use super::equation::{Assertion, Level};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{
-    Array, Binary, Branch, ClockedCall, ConditionalValues, FunctionCalls, Lowered, Lowering,
-    Operations, StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
+    Array, Binary, Branch, ClockedCall, ConditionalValues, FunctionCalls, Lowered, Operations,
+    StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
 };
-use super::shape::UNKNOWN_TEXT;
-use super::string_array::StringArray;
 use crate::diag::Diagnostic;
 
 use crate::eval::{Function, ValueType};

@@ -13,7 +13,8 @@ use crate::flatten::{BaseType, Variability};
 use crate::functions::{Builtin, Temporal};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
-use crate::symbolic::{Expr, RelationOperator, VarId};
+use crate::symbolic::{Expr, RelationOperator, VarId, substitute};
+use rustc_hash::FxHashMap;
 
 impl Builder<'_> {
     /// The value of an operator whose arguments are lowered.

@@ -6,11 +6,11 @@
 
 use super::builder::Builder;
 use super::dae::VariableKind;
-use super::equation::{Equation, Level};
+use super::equation::Equation;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::events::Reinit;
 use super::execution::Loops;
-use super::expressions::{Array, Lowering, StringPart};
+use super::expressions::{Array, Lowering};
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
 use crate::fault;

@@ -100,7 +100,7 @@ impl Instantiation<'_> {
         .at(span);
         match self.classes.library.is_strict() {
             true => return Err(foreign),
-            false => self.warn_once(foreign),
+            false => self.warnings.add_once(foreign),
         }
         let named = arguments.named.iter().find(|named| named.name.node == "message");
         let given = arguments.positional.get(at).or_else(|| named.map(|named| &named.value));

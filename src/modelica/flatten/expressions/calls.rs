@@ -6,6 +6,7 @@ use crate::eval::Function;
 use crate::fault;
 use crate::flatten::errors::{NOT_SUPPORTED, UNKNOWN_CLASS};
 use crate::flatten::expressions::local::Local;
+use crate::flatten::expressions::vectorization::vectorized;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
@@ -63,9 +64,14 @@ impl Instantiation<'_> {
         let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;
         // Variables of a function have no sizes here, though the model may have some of their names.
         if !has_open_names(&arguments, local)
-            && let Some(calls) = self.vectorized(&name, &arguments, span)?
+            && let Some(called) = self.functions.table.get(&name).cloned().flatten()
         {
-            return Ok(calls);
+            let is_strict = self.classes.library.is_strict();
+            let surplus = &mut |argument: &Expression, rank| self.surplus_sizes(argument, rank);
+            if let Some(calls) = vectorized(&called, (&name, &arguments), surplus, is_strict, span)?
+            {
+                return Ok(calls);
+            }
         }
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
@@ -159,7 +165,7 @@ impl Instantiation<'_> {
         let warning = fault!(UNKNOWN_CLASS, "`classDirectory` is not a function of Modelica: it \
             gives the folder of this class";
             help: "write `Modelica.Utilities.Files.loadResource(\"modelica://{class}/…\")`");
-        self.warn_once(warning.at(span));
+        self.warnings.add_once(warning.at(span));
         Ok(Some(folder))
     }
 

@@ -109,6 +109,15 @@ impl Instantiation<'_> {
         evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
     }
 
+    /// Whether an expression has a value at translation: no variable but constants and
+    /// parameters, no operator of time.
+    pub fn is_fixed(&mut self, resolved: &Expression) -> bool {
+        let read = std::mem::take(&mut self.values.read);
+        let fixed = self.known_flat_value(resolved).is_ok();
+        self.values.read = read;
+        fixed
+    }
+
     /// The value of an expression of constants and parameters.
     pub(crate) fn known_value(
         &mut self,
@@ -179,7 +188,7 @@ impl Instantiation<'_> {
             (Some(binding), _) => binding,
             // A parameter without a value has its start value (MLS §8.6).
             (None, Some(start)) => {
-                self.warn_once(
+                self.warnings.add_once(
                     fault!(VALUE_NEEDED, "`{name}` has no value, but its value is needed here: \
                                           its start value is taken";
                     help: "give it a value in its declaration or by a modifier")
@@ -365,8 +374,8 @@ impl Instantiation<'_> {
                                             component: the value of its declaration is used";
             help: "declare it `constant` (MLS §5.3.2)");
         let warning = warning.at(reference.span);
-        if !self.warnings.iter().any(|known| known.message == warning.message) {
-            self.warn_once(warning);
+        if !self.warnings.has_message(&warning.message) {
+            self.warnings.add_once(warning);
         }
         Ok(Local { values: true, ..local.clone() })
     }
@@ -481,7 +490,7 @@ impl Host for Functions<'_, '_> {
         if self.0.classes.library.is_strict() {
             return false;
         }
-        self.0.warn_once(warning);
+        self.0.warnings.add_once(warning);
         true
     }
 

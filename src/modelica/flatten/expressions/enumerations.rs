@@ -69,7 +69,7 @@ impl Classes<'_> {
 
     /// The type whose values are the subscripts of one dimension of a component, as its values; `None`
     /// where the size is a number.
-    fn subscript_type(
+    pub(crate) fn subscript_type(
         &mut self,
         node: NodeId,
         name: Ident,
@@ -123,17 +123,6 @@ impl Classes<'_> {
 }
 
 impl Instantiation<'_> {
-    /// Whether the subscripts of one dimension of a component are of type Boolean.
-    pub(crate) fn is_sized_by_boolean(
-        &mut self,
-        node: NodeId,
-        name: Ident,
-        dimension: usize,
-    ) -> Result<bool, Diagnostic> {
-        let values = self.classes.subscript_type(node, name, dimension)?;
-        Ok(values.is_some_and(|values| self.types().type_of(&values) == Some(BaseType::Boolean)))
-    }
-
     /// `E(i)`, `Integer(e)` and `String(e)` of enumerations; `None` for any other call.
     pub fn conversion(
         &mut self,

@@ -78,7 +78,7 @@ impl Instantiation<'_> {
     fn tolerate_protected(&mut self, access: Result<(), Diagnostic>) -> Result<(), Diagnostic> {
         match access {
             Err(error) if error.code == PROTECTED_ACCESS && !self.classes.library.is_strict() => {
-                self.warn_once(error);
+                self.warnings.add_once(error);
                 Ok(())
             }
             access => access,

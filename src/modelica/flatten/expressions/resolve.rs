@@ -227,7 +227,7 @@ impl Instantiation<'_> {
         if error.code == CONDITIONAL_COMPONENT {
             let help = "only `connect` equations may name it: parameters exclude this branch, which \
                         is left out";
-            self.warn_once(error.help(help));
+            self.warnings.add_once(error.help(help));
         }
     }
 

@@ -109,7 +109,7 @@ impl Instantiation<'_> {
         expanded.modifier.binding = modifier.binding;
         let warning = fault!(UNKNOWN_ELEMENT, "`{}` has no attribute `value`: it is taken as its \
             value", declared.name; help: "write `{} = …`", declared.name);
-        self.warn_once(warning.at(modifier.span.unwrap_or(declared.span)));
+        self.warnings.add_once(warning.at(modifier.span.unwrap_or(declared.span)));
     }
 
     /// The sizes of a component, those of its type included.

@@ -3,7 +3,6 @@
 //! it sizes.
 
 use super::growth::Growth;
-use crate::diag::Diagnostic;
 use crate::external::AtTranslation;
 use crate::flatten::connections::sets::Connections;
 use crate::flatten::expressions::values::Values;
@@ -12,6 +11,7 @@ use crate::flatten::library::Library;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::record_values::RecordValues;
 use crate::flatten::types::Types;
+use crate::flatten::warnings::Warnings;
 use std::rc::Rc;
 
 /// The parts of an instantiation.
@@ -21,7 +21,7 @@ pub(crate) struct Instantiation<'a> {
     pub values: Values,
     /// All connections, as soon as the tree is whole.
     pub connections: Option<Rc<Connections>>,
-    pub warnings: Vec<Diagnostic>,
+    pub warnings: Warnings,
     /// How deep expressions are being resolved.
     pub depth: usize,
     /// The components that are being completed, outermost first.
@@ -41,7 +41,7 @@ impl<'a> Instantiation<'a> {
                 ..Values::default()
             },
             connections: None,
-            warnings: Vec::new(),
+            warnings: Warnings::default(),
             depth: 0,
             growth: Growth::default(),
             record_values: RecordValues::default(),

@@ -1,11 +1,15 @@
-//! Ranges that a loop does not write and its body shows: the sizes of the arrays that its variable
-//! is a subscript of (MLS §11.2.2.1).
+//! Loops: their ranges and iterations (MLS §8.3.3, §11.2.2). A range that is not written is the sizes
+//! of the arrays that the loop variable is a subscript of (MLS §11.2.2.1).
 
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH};
+use crate::flatten::BaseType;
+use crate::flatten::errors::{
+    NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH,
+};
 use crate::flatten::expressions::local::Local;
-use crate::flatten::ids::ScopeId;
+use crate::flatten::flat_expression::literal;
+use crate::flatten::ids::{NodeId, ScopeId};
 use crate::flatten::instantiate::instance::{Declaration, MemberState, NodeKind};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::inference::{SubscriptUse, subscript_uses};
@@ -15,6 +19,10 @@ use crate::syntax::ast::{
     Subscript,
 };
 use crate::syntax::visit::{Visit, walk_statement};
+use crate::value::{ArrayValue, Elements, Value};
+
+/// The most equations that loops are unrolled to.
+pub(crate) const MAX_EQUATIONS: usize = 5_000_000;
 
 /// What a subscript of one dimension of an array runs over.
 #[derive(PartialEq)]
@@ -189,5 +197,78 @@ impl Instantiation<'_> {
             return Ok(size.map(Extent::Size));
         }
         Ok(None)
+    }
+
+    /// Whether the subscripts of one dimension of a component are of type Boolean.
+    fn is_sized_by_boolean(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+        dimension: usize,
+    ) -> Result<bool, Diagnostic> {
+        let values = self.classes.subscript_type(node, name, dimension)?;
+        Ok(values.is_some_and(|values| self.types().type_of(&values) == Some(BaseType::Boolean)))
+    }
+
+    /// What the body of a loop knows in each of its iterations.
+    pub fn iterations(
+        &mut self,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+        out: &mut Vec<Local>,
+    ) -> Result<(), Diagnostic> {
+        let span = indices.first().map(|index| index.name.span);
+        self.each_iteration(indices, context, local, &mut |_, iteration| {
+            out.push(iteration.clone());
+            match span {
+                Some(span) if out.len() > MAX_EQUATIONS => {
+                    let fault = fault!(TOO_LARGE, "the loop has too many iterations");
+                    Err(fault.at(span))
+                }
+                _ => Ok(()),
+            }
+        })
+    }
+
+    /// Visits a loop's body with what it knows in each of its iterations.
+    pub(crate) fn each_iteration(
+        &mut self,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+        visit: &mut dyn FnMut(&mut Self, &Local) -> Result<(), Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else { return visit(self, local) };
+        let span = index.name.span;
+        let range = index.range.as_ref().ok_or_else(|| {
+            fault!(NOT_SUPPORTED, "the range of `{}` is unknown", index.name.node;
+                help: "write the range of the loop, such as `1:n`")
+            .at(span)
+        })?;
+        let resolved = match self.classes.type_range(range, context, local)? {
+            Some(values) => values,
+            None => self.resolve(range, context, local)?,
+        };
+        let mut iteration = local.clone();
+        for value in self.range_values(&resolved)? {
+            iteration.names.push((index.name.node, Some(literal(&value, span))));
+            self.each_iteration(inner, context, &iteration, visit)?;
+            iteration.names.pop();
+        }
+        Ok(())
+    }
+
+    pub(crate) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
+        match self.flat_value(range)? {
+            Value::Array(ArrayValue { dims, elements, .. }) if dims.len() == 1 => {
+                Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
+            }
+            other => {
+                let found = other.type_name();
+                Err(fault!(TYPE_MISMATCH, "a loop needs a vector as its range, got {found}")
+                    .at(range.span))
+            }
+        }
     }
 }
