@@ -17,18 +17,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-const MODEL: &str = "model Oscillator
-  parameter Real mu = 1;
-  parameter Real w = 1;
-  parameter Real d = 0.1;
-  Real x(start = 2, fixed = true);
-  Real v(start = 0, fixed = true);
-equation
-  der(x) = w*v;
-  der(v) = mu*(1 - x^2)*v - w*x - d*v;
-  annotation(experiment(StopTime = 10, Tolerance = 1e-8));
-end Oscillator;
-";
+const MODEL: &str = include_str!("data/models/mpi_model.mo");
 
 const PROBLEM: &str = "model = \"Oscillator\"
 files = [\"Oscillator.mo\"]

@@ -325,24 +325,7 @@ mod tests {
     use crate::syntax::parse_stored_definition;
 
     /// Three pairs of unknowns in a loop, and a value that only events change.
-    const LOOPS: &str = "\
-model Loops
-  parameter Real a[3] = {2, 3, 4};
-  Real x[3](each start = 1, each fixed = true);
-  Real u[3];
-  Real v[3];
-  discrete Real k(start = 1, fixed = true);
-equation
-  for i in 1:3 loop
-    der(x[i]) = u[i] - k*x[i];
-    a[i]*u[i] + v[i] = x[i];
-    u[i] - a[i]*v[i] = k;
-  end for;
-  when time > 0.5 then
-    k = pre(k) + 1;
-  end when;
-end Loops;
-";
+    const LOOPS: &str = include_str!("passes/loops.mo");
 
     fn flat(name: &str, text: &str) -> FlatModel {
         let sources = SourceMap::default();
@@ -371,18 +354,7 @@ end Loops;
     }
 
     /// The second equation says that `w` is twice `u`, so that one of them cannot be a state.
-    const HIDDEN: &str = "\
-model Hidden
-  Real u(start = 1, fixed = true, stateSelect = StateSelect.always);
-  Real w(stateSelect = StateSelect.always);
-  Real i[2];
-equation
-  3*i[1] + 5*i[2] = u;
-  6*i[1] + 10*i[2] = w;
-  der(u) = -i[1];
-  der(w) = -i[2];
-end Hidden;
-";
+    const HIDDEN: &str = include_str!("passes/hidden.mo");
 
     #[test]
     fn a_check_finds_what_hidden_constraints_make_wrong() {

@@ -123,20 +123,7 @@ mod tests {
     use super::*;
     use crate::world::MemoryWorld;
 
-    const CURVE: &str = "model Curve
-  parameter Real a = 1;
-  input Real i;
-  output Real U = log(1 - i/a);
-end Curve;
-model Growth
-  parameter Real a = 1;
-  parameter Real x0 = 1;
-  Real x(start = x0, fixed = true);
-equation
-  der(x) = a*x;
-  assert(x < 2, \"too large\");
-end Growth;
-";
+    const CURVE: &str = include_str!("all_failing/curve.mo");
 
     /// Exit code and all output.
     fn run(script: &str) -> (u8, String) {

@@ -9,6 +9,7 @@ use exceptions::{CYCLES, LONG_FUNCTIONS};
 use gapilib::internals::graph::strongly_connected;
 use sources::{Modules, Source, sources};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// Module, and the modules it may name as `crate::…` (itself always).
@@ -225,6 +226,8 @@ const OUTSIDE: &[&str] = &[
 
 /// Lines of a function that reads at a glance.
 const LONGEST: usize = 60;
+/// Lines of a class that a test itself contains.
+const LONGEST_CLASS: usize = 10;
 /// A file that treats so many functions of the language itself may name them.
 const MOST_NAMED: usize = 6;
 /// Files of a cycle that are one concept, and files in all cycles.
@@ -399,6 +402,38 @@ fn tables_name_every_file_of_their_folder_and_are_read() {
         }
     }
     passes(&wrong);
+}
+
+/// The text of classes lies in files, which editors and `gapi` read as well.
+#[test]
+fn classes_of_tests_lie_in_files() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut tests = Vec::new();
+    for (path, text) in sources::files(&root.join("tests")) {
+        tests.push((path, text.clone(), 0));
+    }
+    for (path, text) in sources::files(&root.join("src")) {
+        let is_test = path.iter().any(|part| part == "tests") || path.ends_with("tests.rs");
+        let begin = if is_test { Some(0) } else { text.find("#[cfg(test)]") };
+        tests.extend(begin.map(|begin| (path, text.clone(), text[..begin].lines().count())));
+    }
+    let mut wrong = Vec::new();
+    for (path, text, begin) in tests {
+        for (line, literal, lines) in sources::literals(&text) {
+            if line > begin && lines > LONGEST_CLASS && begins_with_a_class(&literal) {
+                wrong.push(format!("{}:{line}: a class of {lines} lines", path.display()));
+            }
+        }
+    }
+    passes(&wrong);
+}
+
+/// Whether a text begins with a class definition (MLS §4.5).
+fn begins_with_a_class(text: &str) -> bool {
+    let prefixes = ["encapsulated", "partial", "pure", "impure", "operator", "expandable"];
+    let kinds = ["model", "function", "package", "record", "block", "connector", "class", "type"];
+    let mut words = text.split_whitespace().skip_while(|word| prefixes.contains(word));
+    words.next().is_some_and(|word| kinds.contains(&word)) && text.contains("end ")
 }
 
 #[test]

@@ -62,6 +62,40 @@ pub(super) fn sources() -> Vec<Source> {
     paths.map(|path| read(&root, path, &modules)).collect()
 }
 
+/// All files of code below a folder, with their texts.
+pub(super) fn files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut paths = Vec::new();
+    collect(folder, &mut paths);
+    paths.sort();
+    let text = |path: PathBuf| {
+        let text = fs::read_to_string(&path).expect("a readable source");
+        (path, text)
+    };
+    paths.into_iter().map(text).collect()
+}
+
+/// The string literals of a file: their lines, their values, and over how many lines they go.
+pub(super) fn literals(text: &str) -> Vec<(usize, String, usize)> {
+    let mut found = Vec::new();
+    add_literals(text.parse().expect("Rust"), &mut found);
+    found
+}
+
+fn add_literals(tokens: TokenStream, found: &mut Vec<(usize, String, usize)>) {
+    for tree in tokens {
+        match tree {
+            TokenTree::Group(group) => add_literals(group.stream(), found),
+            TokenTree::Literal(literal) => {
+                let (start, end) = (literal.span().start().line, literal.span().end().line);
+                if let syn::Lit::Str(text) = syn::Lit::new(literal) {
+                    found.push((start, text.value(), end + 1 - start));
+                }
+            }
+            TokenTree::Ident(_) | TokenTree::Punct(_) => {}
+        }
+    }
+}
+
 /// The crate of a file, and the path of its module there; `None` for the facade and the program.
 fn within_crate(path: &Path) -> Option<(&str, Names)> {
     let mut names: Names =

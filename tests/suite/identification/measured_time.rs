@@ -426,21 +426,7 @@ fn where_the_model_fails_before_the_data_begin_the_start_time_is_the_remedy() {
 
 #[test]
 fn a_difference_of_temperatures_has_no_offset() {
-    let model = "package P
-  type Difference = Real(final quantity = \"ThermodynamicTemperature\", final unit = \"K\")
-    annotation(absoluteValue = false);
-  type Rise = Difference(min = 0);
-  model Heater
-    parameter Real P(unit = \"K\") = 5;
-    parameter Real k(unit = \"1/s\") = 0.1;
-    Rise dT(start = 0, fixed = true);
-    Real rise(unit = \"K\") = dT annotation(absoluteValue = false);
-    Real T(unit = \"K\") = 293.15 + dT;
-  equation
-    der(dT) = k*(P - dT);
-  end Heater;
-end P;
-";
+    let model = include_str!("../../data/models/measured_time_difference.mo");
     let rows = (0..20).map(|k| {
         let t = f64::from(k);
         let rise = 12.0 * (1.0 - (-0.2 * t).exp());

@@ -173,29 +173,8 @@ fn what_a_filter_cannot_do_is_refused_with_its_place() {
 
 #[test]
 fn states_that_events_set_and_samples_that_are_kept_are_refused() {
-    let ball = "model Ball
-  parameter Real e = 0.8;
-  Real h(start = 1, fixed = true), v(start = 0, fixed = true);
-equation
-  der(h) = v;
-  der(v) = -9.81;
-  when h < 0 then
-    reinit(v, -e*pre(v));
-  end when;
-end Ball;
-";
-    let sampled = "model Ball
-  parameter Real e = 0.8;
-  Real h(start = 1, fixed = true), v(start = 0, fixed = true);
-  discrete Real u;
-equation
-  der(h) = v;
-  der(v) = -e*u;
-  when sample(0, 0.1) then
-    u = h;
-  end when;
-end Ball;
-";
+    let ball = include_str!("../../data/models/process_noise_events_ball.mo");
+    let sampled = include_str!("../../data/models/process_noise_events_sampled.mo");
     let problem = "model = \"Ball\"\nfiles = [\"M.mo\"]\n[parameters]\ne = { min = 0.1, max = 1 }\n\
                    [noise]\nv = 0.1\n[[experiment]]\ndata = \"d.csv\"\n\
                    outputs = { h = { column = \"h\", sigma = 0.1 } }\n";

@@ -6,24 +6,7 @@ use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
 
-const MODEL: &str = "model Chain
-  parameter Real k = 0.5;
-  parameter Real q = 0.2;
-  parameter Real a = 1;
-  parameter Real s = 1;
-  parameter Real b = 0;
-  parameter Real c = 0;
-  Real x(start = 1, fixed = true);
-  Real z(start = 0, fixed = true);
-  Real signal = a*z;
-  Real second = x;
-  Real scaled = s*z + b;
-  Real rescaled = s*x + c;
-equation
-  der(x) = -k*x;
-  der(z) = k*x - q*z;
-end Chain;
-";
+const MODEL: &str = include_str!("../../data/models/relative_data_model.mo");
 
 /// Times with z of k = 0.6 and q = 0.25 times 37 plus 4, and x times 37 plus 1, both with errors, and
 /// z times 37 times errors.

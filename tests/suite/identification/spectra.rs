@@ -51,21 +51,7 @@ fn distance(result: &Value) -> f64 {
     })
 }
 
-const ELECTRODE: &str = "model Electrode
-  input Real i(unit = \"A\");
-  output Real v(unit = \"V\");
-  parameter Real Rm(unit = \"Ohm\") = 0.05;
-  parameter Real Rct(unit = \"Ohm\") = 0.2;
-  parameter Real Q = 0.03;
-  parameter Real alpha = 0.9;
-  GAPILib.Impedance.ConstantPhaseElement layer(Q = Q, alpha = alpha, fMin = 0.01, fMax = 1e5);
-  Real faradaic(unit = \"A\");
-equation
-  i = layer.i + faradaic;
-  layer.v = Rct*faradaic;
-  v = Rm*i + layer.v;
-end Electrode;
-";
+const ELECTRODE: &str = include_str!("../../data/models/spectra_electrode.mo");
 
 /// The same 31 points with the same weights in scipy.optimize.curve_fit 1.17 (xtol, ftol, gtol 1e-15).
 #[test]

@@ -8,21 +8,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 /// Each generation comes nearer to 0.8 by the fraction F.
-const SCRIPT: &str = "
-model Line
-  parameter Real a(unit = \"m/s\") = 1;
-  output Real y = a*time;
-  annotation(experiment(StopTime = 1));
-end Line;
-F = 0.2;
-x = 0.0;
-pop = {{0.1}, {0.5}, {0.9}, {1.3}};
-for k in 1:8 loop
-  sim := Eval(\"\", \"Line\", {0.0, 0.5, 1.0}, pop, {\"a\"}, \"time\", \"y\");
-  fit := Fit(sim, {0.0, 0.4, 0.8});
-  pop := (1 - F)*pop + F*0.8*ones(4, 1);
-end for;
-";
+const SCRIPT: &str = include_str!("../../data/models/watching_script.mos");
 
 fn run(world: MemoryWorld, journaling: Journaling) -> (u8, String, Session) {
     let streams = world.streams();
@@ -198,18 +184,7 @@ fn a_view_shows_generations_genes_and_fit() {
 
 #[test]
 fn a_view_says_what_is_counted_and_why_simulations_fail() {
-    let script = "
-model Root
-  parameter Real a = 1;
-  output Real y = sqrt(a)*time;
-  annotation(experiment(StopTime = 1));
-end Root;
-pop = {{-1.0}, {0.5}, {-2.0}};
-for k in 1:3 loop
-  fit := Fit(Eval(\"\", \"Root\", {0.0, 1.0}, pop, {\"a\"}, \"time\", \"y\"), {0.0, 0.8});
-  (pop, fit) := Fit_Order(pop, fit, 3, 2, 1);
-end for;
-";
+    let script = include_str!("../../data/models/watching_failing.mos");
     let views: Views = Arc::new(Mutex::new(Vec::new()));
     let mut session = Session::new(Box::new(MemoryWorld::new().watched(&views)));
     assert_eq!(session.run_text("root.mos", script).code, 0);
@@ -221,25 +196,7 @@ end for;
 }
 
 /// Long enough to be killed: a few hundred generations.
-const LONG: &str = "
-model Decay
-  parameter Real k = 1;
-  Real x(start = 1, fixed = true);
-  output Real y = x;
-equation
-  der(x) = -k*x;
-  annotation(experiment(StopTime = 4, Tolerance = 1e-8));
-end Decay;
-pop = {{0.1*k} for k in 1:20};
-t = {0.1*k for k in 0:40};
-y = {exp(-0.7*k/10) for k in 0:40};
-for k in 1:80 loop
-  sim := Eval(\"\", \"Decay\", t, pop, {\"k\"}, \"time\", \"y\");
-  fit := Fit(sim, y);
-  pop := 0.97*pop + 0.021*ones(20, 1);
-end for;
-print(\"end \" + String(pop[1, 1], format = \".17g\"));
-";
+const LONG: &str = include_str!("../../data/models/watching_long.mos");
 
 #[test]
 fn scripts_that_are_killed_resume_to_the_same_end() {

@@ -466,25 +466,9 @@ fn functions_that_change_an_object_have_values() {
                 static void sum_free(void *s) { free(s); } \
                 static void sum_add(void *s, double x) { ((sum_t *)s)->sum += x; } \
                 static double sum_get(void *s, double t) { return ((sum_t *)s)->sum; }";
-    let code = format!("annotation(Include = \"#include <stdlib.h>\n{code}\")");
-    let model = format!(
-        "model M\n  class Sum\n    extends ExternalObject;\n    function constructor\n      \
-         output Sum s;\n      external \"C\" s = sum_new() {code};\n    end constructor;\n    \
-         function destructor\n      input Sum s;\n      external \"C\" sum_free(s) {code};\n    \
-         end destructor;\n  end Sum;\n  \
-         function add_\n    input Sum s;\n    input Real x;\n    \
-         external \"C\" sum_add(s, x) {code};\n  end add_;\n  \
-         function get_\n    input Sum s;\n    input Real t;\n    output Real y;\n    \
-         external \"C\" y = sum_get(s, t) {code};\n  end get_;\n  \
-         function add\n    input Sum s;\n    input Real x;\n    input Real before;\n    \
-         output Real after;\n  algorithm\n    add_(s, x);\n    after := before;\n  end add;\n  \
-         Sum s = Sum();\n  Real t(start = 0, fixed = true);\n  \
-         Real last(start = 0, fixed = true);\nequation\n  \
-         when sample(0.25, 0.25) then\n    t = add(s, 3, time);\n    last = get_(s, t);\n  \
-         end when;\n  when sample(0.3, 0.25) then\n    \
-         assert(abs(last - 3*floor(time/0.25)) < 1e-9, \"another sum\");\n  end when;\n\
-         end M;\n"
-    );
+    let code = format!("Include = \"#include <stdlib.h>\n{code}\"");
+    let model = include_str!("../../data/models/c_functions_sum.mo");
+    let model = model.replace("Include = \"\"", &code);
     let here = folder(&[("M.mo", &model)]);
     let arguments = ["simulate", "M.mo", "--allow-external", "--output", "r.csv"];
     let (code, out, errors) = gapi(&here, &arguments);

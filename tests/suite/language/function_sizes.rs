@@ -30,22 +30,7 @@ fn functions_take_arrays_of_strings() {
 /// An array that grows while its function runs is known only where its arguments are.
 #[test]
 fn arrays_that_grow_are_run_for_known_arguments() {
-    let model = "model Grows
-      function positive
-        input Real x[:];
-        output Real y[:];
-      algorithm
-        for i in 1:size(x, 1) loop
-          if x[i] > 0 then
-            y := cat(1, y, x[i:i]);
-          end if;
-        end for;
-      end positive;
-      parameter Real a[:] = {-2, 1, 0, -1, 2} annotation(Evaluate = true);
-      parameter Real x[:] = positive(a);
-    equation
-      assert(size(x, 1) == 2 and x[2] == 2, \"not the positive ones\");
-    end Grows;";
+    let model = include_str!("../../data/models/function_sizes_growing.mo");
     let world = MemoryWorld::new().with_file("M.mo", model);
     let streams = world.streams();
     let script = "openModel(\"M.mo\"); simulateModel(\"Grows\");";

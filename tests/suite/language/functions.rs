@@ -404,19 +404,7 @@ fn what_cannot_be_compiled_is_run_for_known_arguments() {
 #[test]
 fn the_second_derivative_function_is_used() {
     // Of sin(k u), where the functions say 7 times as much: nobody else would.
-    let model = "model Main \
-        function f input Real u; input Real k; output Real y; protected Integer n = 0; \
-        algorithm while n < 1 and u < 9 loop n := n + 1; y := sin(k*u); end while; \
-        annotation(derivative(noDerivative = k) = slope); end f; \
-        function slope input Real u; input Real k; input Real du; output Real dy; \
-        protected Integer n = 0; algorithm while n < 1 and u < 9 loop n := n + 1; \
-        dy := 7*k*cos(k*u)*du; end while; \
-        annotation(derivative(noDerivative = k, order = 2) = bend); end slope; \
-        function bend input Real u; input Real k; input Real du; input Real ddu; \
-        output Real ddy; protected Integer n = 0; algorithm while n < 1 and u < 9 loop n := n + 1; \
-        ddy := 70*k*cos(k*u)*ddu - 700*k^2*sin(k*u)*du^2; end while; end bend; \
-        Real x(start = 0.3, fixed = true); Real y; Real w; Real a; \
-        equation der(x) = cos(time) + x; y = f(x, 2); w = der(y); a = der(w); end Main;";
+    let model = include_str!("../../data/models/functions_second_derivative.mo");
     let run = simulated(model, 1.0);
     let column = |name: &str| run.values(name)[0];
     let (speed, bent) = (1.0 + 0.3, 1.0 + 0.3);
@@ -511,37 +499,7 @@ fn parameters_without_value_are_faults_of_who_reads_them() {
 /// between.
 #[test]
 fn arguments_are_computed_again_where_another_branch_has_computed_them() {
-    let model = "model Branches
-      function f
-        input Real a;
-        input Real b;
-        output Real y;
-      algorithm
-        y := a + b;
-        while y > 1 loop
-          y := y - 1;
-        end while;
-      end f;
-      function g
-        input Real a;
-        input Real b;
-        output Real y;
-      algorithm
-        y := a - b;
-        while y < 0 loop
-          y := y + 1;
-        end while;
-      end g;
-      Real x(start = 0, fixed = true);
-      Real u;
-      Real v;
-      Real w;
-    equation
-      der(x) = 1 + 0*(u + v + w);
-      u = if x > 0.5 then f(2*sin(x), x) else 0;
-      v = if x > 0.2 then 2*sin(x)*u else 1;
-      w = if x > 0.5 then g(2*sin(x), x) + v else 0;
-    end Branches;";
+    let model = include_str!("../../data/models/functions_branches.mo");
     let world = MemoryWorld::new().with_file("M.mo", model);
     let streams = world.streams();
     let script = "openModel(\"M.mo\");
@@ -562,25 +520,7 @@ fn arguments_are_computed_again_where_another_branch_has_computed_them() {
 /// `der(f, x)` is a function, of loops, of several inputs and inside of others (MLS §12.7.2).
 #[test]
 fn partial_derivatives_are_functions() {
-    let text = "model M
-      function f input Real x; input Real y; output Real z;
-      algorithm assert(x >= 0, \"negative\"); z := x^2*y + sin(x); end f;
-      function fx = der(f, x);
-      function fxy = der(f, x, y);
-      function s input Real x; input Integer n; output Real s;
-      algorithm s := 0; for i in 1:n loop s := s + x^i; end for; annotation(Inline = false); end s;
-      function sx = der(s, x);
-      function root input Real x; output Real s;
-      algorithm s := 1; while s*s < x loop s := s + 0.5*x; end while; end root;
-      function root_x = der(root, x);
-      function total input Real x; output Real y;
-      algorithm y := 0; for i in 1:3 loop y := y + fx(x, i); end for; end total;
-      Real a = fx(time, 3);
-      Real b = fxy(time, 2);
-      Real c = sx(time, 4);
-      Real d = total(time);
-      Real e = root_x(5 + time);
-    end M;";
+    let text = include_str!("../../data/models/functions_partial_derivatives.mo");
     let run = simulated(text, 1.0);
     for t in [0.0, 0.4, 1.0_f64] {
         let expected = [
@@ -616,51 +556,7 @@ fn partial_derivatives_need_scalar_real_inputs() {
 /// What a partial application binds need not be the last inputs (MLS §12.4.2.1).
 #[test]
 fn partial_applications_bind_any_inputs() {
-    let model = "model Partial
-      partial function Shape
-        input Real x;
-        output Real y;
-      end Shape;
-      function trapezoid
-        input Real a;
-        input Real b;
-        input Shape f;
-        output Real area;
-      algorithm
-        area := (b - a)*(f(a) + f(b))/2;
-      end trapezoid;
-      function halves
-        input Real a;
-        input Real b;
-        input Shape f;
-        output Real area;
-      algorithm
-        area := trapezoid(a, (a + b)/2, f) + trapezoid((a + b)/2, b, f);
-      end halves;
-      function line
-        input Real slope;
-        input Real x;
-        input Real offset;
-        output Real y;
-      algorithm
-        y := offset + slope*x;
-      end line;
-      function raised
-        input Real a;
-        input Real b;
-        input Lift f;
-        output Real area;
-      algorithm
-        area := halves(a, b, function f(offset = 3));
-      end raised;
-      partial function Lift
-        input Real x;
-        input Real offset;
-        output Real y;
-      end Lift;
-      Real area = halves(0, 2, function line(slope = time, offset = 3));
-      Real twice = raised(0, 2, function line(slope = 2*time));
-    end Partial;";
+    let model = include_str!("../../data/models/functions_bound_inputs.mo");
     let world = MemoryWorld::new().with_file("M.mo", model);
     let streams = world.streams();
     let script = "openModel(\"M.mo\");
@@ -676,36 +572,7 @@ fn partial_applications_bind_any_inputs() {
 
 #[test]
 fn what_a_partial_application_binds_may_have_sizes_of_other_inputs() {
-    let model = "model Sizes
-      partial function Integrand
-        input Real u;
-        output Real y;
-      end Integrand;
-      function weighted
-        extends Integrand;
-        input Real d[n];
-        input Integer n;
-      algorithm
-        y := u*sum(d)/n;
-      end weighted;
-      function trapezoid
-        input Integrand f;
-        input Real a;
-        input Real b;
-        output Real area;
-      algorithm
-        area := (b - a)*(f(a) + f(b))/2;
-      end trapezoid;
-      function total
-        input Real d[:];
-        output Real y;
-      algorithm
-        y := trapezoid(function weighted(d = d, n = size(d, 1)), 0, 2);
-      end total;
-      parameter Integer k = integer(total({1, 2, 3}));
-      Real v[k] = fill(time, k);
-      Real z = total({1, 2, 3 + time});
-    end Sizes;";
+    let model = include_str!("../../data/models/functions_bound_sizes.mo");
     let file = parse_stored_definition(SourceId::NONE, model).expect("Modelica");
     let mut library = Library::new();
     library.load(&file).expect("a loadable file");
@@ -723,21 +590,7 @@ fn what_a_partial_application_binds_may_have_sizes_of_other_inputs() {
 /// The least and the greatest of nothing are the ends of the type (MLS §10.3.4.1).
 #[test]
 fn the_least_of_no_elements_is_the_greatest_value_of_their_type() {
-    let model = "model Ends
-      function all_of input Boolean b[:]; output Boolean r = min(b); algorithm annotation(Inline = true);
-      end all_of;
-      function any_of input Boolean b[:]; output Boolean r; algorithm
-        for i in 1:2 loop r := max(b); end for;
-      end any_of;
-      parameter Integer n = 0;
-      Boolean v[n];
-      Real truths[:] = {if all_of(fill(false, 0)) == true then 1 else 0,
-        if any_of(fill(true, 0)) == false then 1 else 0,
-        if min(v) == true and max(v) == false then 1 else 0};
-      Integer k[n];
-      Boolean ends = max(k) < min(k);
-      Real x = sum(truths) + (if ends then 1 else 0);
-    end Ends;";
+    let model = include_str!("../../data/models/functions_extremes.mo");
     let file = parse_stored_definition(SourceId::NONE, model).expect("Modelica");
     let mut library = Library::new();
     library.load(&file).expect("a loadable file");

@@ -44,32 +44,18 @@ fn long_lists_are_read_copied_compared_and_printed() {
 /// are exact.
 #[test]
 fn sums_have_their_values() {
-    let text = format!(
-        "model M
-           function f
-             input Real u;
-             output Real y;
-           algorithm
-             y := {};
-           end f;
-           parameter Real p = 0.5;
-           parameter Real q = {};
-           Real x[100](each start = 1, each fixed = true);
-           Real all, of_function, of_algorithm;
-         equation
-           for i in 1:100 loop
-             der(x[i]) = 1;
-           end for;
-           all = 1{};
-           of_function = f(x[1]);
-         algorithm
-           of_algorithm := {};
-         end M;",
-        list("u", " + u - 0.5"),
-        list("1", " + p"),
-        (0..TERMS).map(|at| format!(" + x[{}]", at % 100 + 1)).collect::<String>(),
-        list("p", " - x[2] + 1"),
-    );
+    let mut text = include_str!("../../data/models/long_expressions_sums.mo").to_owned();
+    for (name, terms) in [
+        ("terms_of_f", list("u", " + u - 0.5")),
+        ("terms_of_q", list("1", " + p")),
+        (
+            " + terms_of_all",
+            (0..TERMS).map(|at| format!(" + x[{}]", at % 100 + 1)).collect::<String>(),
+        ),
+        ("terms_of_algorithm", list("p", " - x[2] + 1")),
+    ] {
+        text = text.replace(name, &terms);
+    }
     let run = simulated(&text, 1.0);
     let terms = TERMS as f64;
     for (name, first, last) in [
@@ -86,27 +72,16 @@ fn sums_have_their_values() {
 /// The root is differentiated, and no equation is linear in `y`.
 #[test]
 fn products_conditions_and_equations_that_are_solved() {
-    let text = format!(
-        "model M
-           parameter Real p = 1;
-           Real x(start = 1, fixed = true);
-           Real product, root, slope, y(start = 1);
-           Boolean both, one;
-         equation
-           der(x) = 1;
-           product = {};
-           root = sqrt({});
-           slope = der(root);
-           0 = 8 - y^3 + {};
-           both = {};
-           one = {};
-         end M;",
-        shorter("x", " * p / 1"),
-        shorter("x^2", " + p*x^2"),
-        shorter("p", " + x - x"),
-        shorter("x > 0", " and p > 0"),
-        shorter("x > 10", " or x > 3"),
-    );
+    let mut text = include_str!("../../data/models/long_expressions_products.mo").to_owned();
+    for (name, terms) in [
+        ("terms_of_product", shorter("x", " * p / 1")),
+        ("terms_of_root", shorter("x^2", " + p*x^2")),
+        ("terms_of_cube", shorter("p", " + x - x")),
+        ("terms_of_both", shorter("x > 0", " and p > 0")),
+        ("terms_of_one", shorter("x > 10", " or x > 3")),
+    ] {
+        text = text.replace(name, &terms);
+    }
     let run = simulated(&text, 1.0);
     let root = ((FEWER + 1) as f64).sqrt();
     for (name, last) in [

@@ -79,18 +79,7 @@ fn strings_are_made_in_equations_algorithms_and_functions() {
 
 #[test]
 fn a_file_whose_name_is_made_during_the_simulation_is_refused() {
-    let text = "model M
-  function lines
-    input String file;
-    output Integer n;
-    external \"C\" n = ModelicaInternal_countLines(file);
-  end lines;
-  discrete Integer k(start = 0, fixed = true);
-equation
-  when sample(1, 1) then
-    k = lines(\"data\" + String(pre(k)) + \".txt\");
-  end when;
-end M;";
+    let text = include_str!("../../data/models/run_time_strings_file_name.mo");
     let error = translated(text, "M").expect_err("the file is not known");
     assert!(error.message.contains("must be known at translation"), "{}", error.message);
 }
@@ -107,33 +96,7 @@ end M;";
 /// What a function passes on to another one is not known there either.
 #[test]
 fn a_string_that_is_made_may_be_a_local_of_a_function_of_a_function() {
-    let text = "model M
-  function shortened
-    input String text;
-    input Boolean is_short;
-    output Boolean ok;
-  protected
-    String start;
-  algorithm
-    if is_short then
-      start := text;
-    else
-      start := \"long: \" + text;
-    end if;
-    ok := start == \"long: 2 kPa\" or start == \"1 kPa\";
-  end shortened;
-  function f
-    input Real x;
-    output Boolean ok;
-  algorithm
-    ok := shortened(String(x) + \" kPa\", x < 1.5);
-  end f;
-  discrete Real k(start = 0, fixed = true);
-equation
-  when sample(1, 1) then
-    k = if f(time) then 1 else 2;
-  end when;
-end M;";
+    let text = include_str!("../../data/models/run_time_strings_local.mo");
     let program = translated(text, "M").expect("a model");
     let mut system = program.system();
     let rows = rows(&mut system, 1);

@@ -64,21 +64,10 @@ fn zero_is_taken_in_simulations_with_one_warning_for_each_function() {
 
 #[test]
 fn assertions_of_level_warning_warn_once() {
-    let rest = "
-      function careful
-        input Real x;
-        output Real y = 0;
-      protected
-        Real i = 0;
-      algorithm
-        while i * x < 3 * x loop
-          i := i + 1;
-          assert(x < 0.125, \"x is \" + String(3) + \" times too large\", AssertionLevel.warning);
-          assert(x < 7, \"never\", AssertionLevel.warning);
-          y := y + i * x;
-        end while;
-      end careful;
-      Real y = careful(time);";
+    let rest = concat!(
+        include_str!("../../data/models/unassigned_variables_careful.mo"),
+        "Real y = careful(time);"
+    );
     for strict in [false, true] {
         let (program, _) = translated(rest, strict).expect("a model");
         let (found, warnings) = simulated(&program).expect("a simulation");

@@ -321,17 +321,7 @@ fn a_branch_whose_function_has_no_value_beyond_its_relation_is_left() {
 /// decides, but for rounding. An event elsewhere does not ask again.
 #[test]
 fn an_event_elsewhere_leaves_a_relation_at_its_border() {
-    let text = "model P
-        Real level(start = 0, fixed = true) \"left\"; Real m; Real a(start = 3); Real b(start = 3); Real s;
-        Boolean inflow; Integer n(start = 0, fixed = true);
-        equation
-        der(level) = 1;
-        m = 2*(a - b) + 0.1*(a - b)^3;
-        0 = if level >= 5 then a - 1 - level else m;
-        inflow = s > 0;
-        0 = if inflow then b - 1 else m;
-        s = if inflow then m else b - 1;
-        when sample(1, 1) then n = pre(n) + 1; end when; end P;";
+    let text = include_str!("../../data/models/chattering_border.mo");
     let run = run(text, "dassl", 1e-6, 8.0);
     run.cost();
     near(run.at("n", 8.0), 8.0, 0.0);

@@ -235,22 +235,7 @@ fn water_effect_on_a_finer_mesh_has_the_reference_voltages() {
 /// channel, is what the membrane and the pores hold more than at the start.
 #[test]
 fn water_is_conserved() {
-    let source = "model Test
-        extends CaseStudies.WaterEffect;
-        Real anodeGave(start = 0, fixed = true);
-        Real formed(start = 0, fixed = true);
-        Real left(start = 0, fixed = true);
-        Real held;
-      equation
-        der(anodeGave) = -anode.water.J;
-        der(formed) = -load.i/(2*96485);
-        der(left) = channel.gas.jW + channel.gas.jL;
-        held = properties.cf*membrane.h*sum(membrane.c.water.lambda)
-          + active.h*active.eps*sum(properties.cw*active.c.gas.s
-            + (ones(n + 1) - active.c.gas.s).*active.c.gas.w/properties.RT)
-          + diffusion.h*diffusion.eps*sum(properties.cw*diffusion.c.gas.s
-            + (ones(n + 1) - diffusion.c.gas.s).*diffusion.c.gas.w/properties.RT);
-      end Test;";
+    let source = include_str!("../../data/models/fuel_cells_water.mo");
     let names = ["anodeGave", "formed", "left", "held"];
     let rows = trajectories(source, "Test", 60.0, &[0.0, 9000.0], &names);
     let [gave, formed, left, held] = [0, 1, 2, 3].map(|row| rows[row][1] - rows[row][0]);

@@ -25,20 +25,7 @@ fn a_crossing_that_time_alone_makes_is_seen_though_steps_are_long() {
 #[test]
 fn a_block_at_the_limit_of_its_friction_begins_to_slide_once() {
     // The force grows to the limit and beyond; a = force - 1 from t = 1 on, so v = (t - 1)²/2.
-    let text = "model Block
-        parameter Real limit = 1;
-        Real v(start = 0, fixed = true);
-        Real s;
-        Real a;
-        Boolean slides(start = false, fixed = true);
-        Boolean begins(start = false, fixed = true);
-      equation
-        begins = not pre(slides) and (s > limit or pre(begins) and s > limit);
-        slides = begins and v > 0 or pre(slides) and v > 0;
-        a = if not (begins or pre(slides)) then 0 else s - limit;
-        a = time - (if not (begins or pre(slides)) then s else limit);
-        der(v) = a;
-      end Block;";
+    let text = include_str!("../../data/models/hybrid_limits_friction.mo");
     let run = simulated(text, 3.0);
     near(run.last("v"), 2.0, 1e-7);
     near(run.at("v", 1.5), 0.125, 1e-7);
@@ -46,26 +33,7 @@ fn a_block_at_the_limit_of_its_friction_begins_to_slide_once() {
 
 #[test]
 fn a_loop_is_left_under_a_condition_that_varies() {
-    let text = "model First
-        Integer n(start = 0, fixed = true);
-        Integer first(start = 0, fixed = true);
-        Integer turns(start = 0, fixed = true);
-        constant Integer limits[4] = {2, 4, 6, 8};
-      algorithm
-        when sample(0.5, 1) then
-          n := pre(n) + 1;
-          first := 0;
-          turns := 0;
-          for i in 1:4 loop
-            turns := turns + 1;
-            if limits[i] > n then
-              first := i;
-              break;
-            end if;
-            turns := turns + 10;
-          end for;
-        end when;
-      end First;";
+    let text = include_str!("../../data/models/hybrid_limits_loop.mo");
     let run = simulated(text, 9.0);
     for (t, n) in (0..9).map(|k| (f64::from(k) + 0.5, k + 1)) {
         let first = [2, 4, 6, 8].iter().position(|limit| *limit > n);
@@ -77,17 +45,7 @@ fn a_loop_is_left_under_a_condition_that_varies() {
 
 #[test]
 fn a_subscript_computed_at_an_event_chooses_what_is_assigned() {
-    let text = "model Buffer
-        Integer n(start = 0, fixed = true);
-        Real values[3](each start = 0, each fixed = true);
-        Real pairs[2, 2](each start = 0, each fixed = true);
-      algorithm
-        when sample(0.5, 1) then
-          n := mod(pre(n), 3) + 1;
-          values[n] := time;
-          pairs[if n > 1 then 2 else 1, :] := {time, n};
-        end when;
-      end Buffer;";
+    let text = include_str!("../../data/models/hybrid_limits_subscript.mo");
     let run = simulated(text, 5.0);
     // Written at 0.5, 1.5, 2.5, 3.5, 4.5 with n = 1, 2, 3, 1, 2.
     near(run.last("values[1]"), 3.5, 1e-12);
@@ -101,23 +59,8 @@ fn a_subscript_computed_at_an_event_chooses_what_is_assigned() {
 #[test]
 fn a_function_without_outputs_checks_its_arguments() {
     let text = |second: f64| {
-        format!(
-            "model Checked
-               function check
-                 input Real table[:];
-               algorithm
-                 for i in 2:size(table, 1) loop
-                   assert(table[i] > table[i - 1], \"not ascending\");
-                 end for;
-               end check;
-               parameter Real table[3] = {{0, {second}, 2}};
-               Real x(start = 1, fixed = true);
-             initial algorithm
-               check(table);
-             equation
-               der(x) = -x;
-             end Checked;"
-        )
+        let model = include_str!("../../data/models/hybrid_limits_checked.mo");
+        model.replace("{0, 1, 2}", &format!("{{0, {second}, 2}}"))
     };
     simulated(&text(1.0), 1.0);
     let (program, _, _, ended) = crate::support::simulated::attempt(&text(3.0), 1.0);
@@ -127,20 +70,7 @@ fn a_function_without_outputs_checks_its_arguments() {
 
 #[test]
 fn a_function_of_scalars_takes_arrays_element_by_element() {
-    let text = "model Elements
-        function f
-          input Real a;
-          input Real b;
-          output Real y = 2*a + b;
-          output Real z = a - b;
-        end f;
-        Real y[2] = f({time, 1}, 3);
-        Real m[2, 2] = f([1, 2; 3, 4], [time, 0; 0, time]);
-        Real u[2];
-        Real w[2];
-      equation
-        (u, w) = f({1, time}, {time, 2});
-      end Elements;";
+    let text = include_str!("../../data/models/hybrid_limits_elements.mo");
     let run = simulated(text, 2.0);
     let last = ["y[1]", "y[2]", "m[1,1]", "m[2,1]", "m[2,2]", "u[2]", "w[1]"].map(|n| run.last(n));
     assert_eq!(last, [7.0, 5.0, 4.0, 6.0, 10.0, 6.0, -1.0]);
@@ -244,29 +174,7 @@ fn no_event_has_none_and_a_plain_branch_has_one() {
 
 #[test]
 fn texts_change_at_events() {
-    let text = "model Label
-        type Mode = enumeration(low, middle, high);
-        Mode mode(start = Mode.low, fixed = true);
-        String label;
-        String last(start = \"none\", fixed = true);
-        String word = if label == \"low\" then \"small\" else \"large\";
-        Real x(start = 0, fixed = true);
-        Integer changes(start = 0, fixed = true);
-        Integer code;
-        Boolean fresh;
-      equation
-        der(x) = 1;
-        mode = if x > 2 then Mode.high elseif x > 1 then Mode.middle else Mode.low;
-        label = if mode == Mode.high then \"high\" elseif mode == Mode.middle then \"mid\" else \"low\";
-        when change(label) then
-          last = pre(label);
-          changes = pre(changes) + 1;
-        end when;
-        fresh = last == \"none\";
-        code = (if label == \"high\" then 100 elseif \"mid\" == label then 200 else 300)
-          + (if last == \"mid\" then 10 elseif last == \"low\" then 20 else 30)
-          + (if word <> \"large\" then 1 else 2);
-      end Label;";
+    let text = include_str!("../../data/models/hybrid_limits_strings.mo");
     let run = simulated(text, 3.0);
     assert_eq!((run.at("code", 0.6), run.at("fresh", 0.6)), (331.0, 1.0));
     assert_eq!((run.at("code", 1.5), run.at("fresh", 1.5)), (222.0, 0.0));
@@ -317,21 +225,7 @@ fn a_branch_that_begins_behind_an_instant_is_not_evaluated_at_it() {
     let run = simulated(mean, 1.0);
     assert_eq!(run.values("z")[0], 5.0);
     near(run.last("z"), 2.0, 1e-9);
-    let later = "model Later
-        Real y(start = 0, fixed = true);
-        Real z;
-        Integer n(start = 0, fixed = true);
-        Integer m(start = 0, fixed = true);
-      equation
-        der(y) = 2;
-        z = if time > 0.5 then (y - 1)/(time - 0.5) else 5;
-        when sample(0, 0.25) then
-          n = pre(n) + 1;
-        end when;
-        when time > 0.5 then
-          m = pre(m) + 1;
-        end when;
-      end Later;";
+    let later = include_str!("../../data/models/hybrid_limits_instant_later.mo");
     let run = simulated(later, 1.0);
     near(run.at("z", 0.25), 5.0, 0.0);
     near(run.last("z"), 2.0, 1e-9);

@@ -45,28 +45,7 @@ fn after_writer(model: &str, then: &str) -> (u8, String, String) {
 /// (MLS §3.7.1).
 #[test]
 fn numbers_of_an_event_are_printed_into_files() {
-    let model = "model W
-  impure function tell
-    input String text;
-    input String file;
-    external \"C\" ModelicaInternal_print(text, file);
-  end tell;
-  parameter String file = \"log.txt\";
-  parameter String separator = \";\";
-  Real u = 2*time;
-  Integer n(start = 0, fixed = true);
-  Boolean late = time > 0.75;
-algorithm
-  when sample(0, 0.5) then
-    n := pre(n) + 1234567;
-    tell(String(time) + separator + String(u/3, significantDigits = 3) + separator + String(n)
-      + separator + String(late, minimumLength = 6) + separator + String(u, format = \"8.3f\"), file);
-  end when;
-equation
-  when time > 0.25 then
-    tell(\"u is \" + String(u/3, significantDigits = 10), \"other.txt\");
-  end when;
-end W;";
+    let model = include_str!("../../data/models/notices_printed.mo");
     let then = "Modelica.Utilities.Streams.readFile(\"log.txt\")\n\
                 Modelica.Utilities.Streams.readFile(\"other.txt\")";
     let (code, output, errors) = after_writer(model, then);
@@ -97,17 +76,7 @@ fn every_call_that_writes_is_carried_out_where_it_stands() {
     let pure = WRITER.replace("impure function", "function");
     let several = pure.replace(
         "  parameter Integer method",
-        "  function all
-    input Real x;
-    output Boolean done;
-  algorithm
-    done := write(\"a.mat\", \"A\", [x]);
-    if x < 0 then
-      done := write(\"b.mat\", \"A\", [x]);
-    end if;
-    done := write(\"c.mat\", \"A\", [2*x]);
-  end all;
-  parameter Integer method",
+        concat!(include_str!("../../data/models/notices_all.mo"), "  parameter Integer method"),
     );
     let model = several.replace("write(\"end.mat\", \"A\", [x, n; 3, 4])", "all(x)");
     let read = |file: &str| format!("readMatrix(\"{file}.mat\", \"A\", 1, 1)\n");
@@ -137,40 +106,7 @@ fn what_is_written_has_no_value() {
 /// The value of such a call says that it was carried out; files grow in the order of the statements.
 #[test]
 fn the_value_of_a_call_that_writes_can_be_assigned() {
-    let model = "model W
-  impure function write
-    input String file;
-    input String name;
-    input Real matrix[:, :];
-    input Boolean append = false;
-    output Boolean done;
-    external \"C\" done = ModelicaIO_writeRealMatrix(
-      file, name, matrix, size(matrix, 1), size(matrix, 2), append, \"4\");
-  end write;
-  Real x(start = 0, fixed = true);
-  discrete Boolean first, second, later(start = false, fixed = true), never(start = false, fixed = true);
-  Boolean other(start = false, fixed = true);
-equation
-  der(x) = 1;
-  when x > 0.5 then
-    other = write(\"other.mat\", \"A\", [x]);
-  end when;
-  when terminal() then
-    assert(first and second and later and other and not never, \"what was written\");
-  end when;
-algorithm
-  when initial() then
-    first := write(\"all.mat\", \"A\", [1]);
-    second := write(\"all.mat\", \"B\", [2], append=true);
-  end when;
-  when x > 0.25 then
-    if x < 10 then
-      later := write(\"all.mat\", \"C\", [x], append=true);
-    else
-      never := write(\"never.mat\", \"A\", [x]);
-    end if;
-  end when;
-end W;";
+    let model = include_str!("../../data/models/notices_assigned.mo");
     let read = |file: &str, name: &str| format!("readMatrix(\"{file}\", \"{name}\", 1, 1)\n");
     let all = read("all.mat", "A") + &read("all.mat", "B") + &read("all.mat", "C");
     let (code, output, errors) = after_writer(model, &(all + &read("other.mat", "A")));

@@ -131,31 +131,7 @@ fn cascades_of_any_length_end() {
 /// A limiter that begins at its limit hides what determines its input: another branch has a solution.
 #[test]
 fn a_branch_that_cannot_be_solved_is_left_for_one_that_can() {
-    let text = "model LeadLag
-        Real y;
-        Real before;
-        Real filtered;
-        Real u = if time > 2 then 2 else 1;
-        Boolean tracks;
-        discrete Real begin;
-      initial equation
-        y = 1;
-        begin = 10;
-      equation
-        when sample(10, 40) then
-          begin = time;
-        end when;
-        tracks = time >= begin and time < begin + 4;
-        if not tracks then
-          y = min(3, max(0, before));
-          before = 0.5*u + filtered;
-          filtered + 2*der(filtered) = 0.5*u;
-        else
-          y = min(3, max(0, before));
-          before = 2;
-          filtered + 1e-3*der(filtered) = y - 0.5*u;
-        end if;
-      end LeadLag;";
+    let text = include_str!("../../data/models/starting_branch.mo");
     let run = simulated(text, 0.0);
     assert_eq!([run.last("y"), run.last("before"), run.last("filtered")], [1.0, 1.0, 0.5]);
     let upper = text.replace("y = 1;", "y = 2.5;");

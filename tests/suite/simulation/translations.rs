@@ -239,30 +239,7 @@ fn a_changed_file_is_translated_anew() {
 
 #[test]
 fn what_a_kept_model_prints_is_what_a_translated_one_prints() {
-    let lines = "model P
-  function tell
-    input Real t;
-  algorithm
-    print(\"at \" + String(t));
-  end tell;
-  function print
-    input String text;
-    input String file = \"\";
-    external \"C\" ModelicaInternal_print(text, file);
-  end print;
-  Real x(start = 0, fixed = true);
-  Real v[400];
-equation
-  der(x) = 1;
-  for i in 1:400 loop
-    der(v[i]) = sin(v[i]) * i + cos(time * i);
-  end for;
-algorithm
-  when sample(0.25, 0.25) then
-    tell(time);
-  end when;
-  annotation(experiment(StopTime = 1));
-end P;";
+    let lines = include_str!("../../data/models/translations_prints.mo");
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("P.mo"), lines).expect("a file");
     let cache = folder.path().join("cache");

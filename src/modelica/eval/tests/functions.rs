@@ -51,21 +51,7 @@ function call input Real x; output Real y; algorithm y := divide(x - x); end cal
 
 #[test]
 fn sizes_of_locals_follow_the_inputs() {
-    let script = "
-function doubled
-  input Real x[:];
-  output Real y[size(x, 1)];
-protected
-  Integer n = size(x, 1);
-  Real scratch[n, 2];
-algorithm
-  for i in 1:n loop
-    scratch[i, 1] := x[i];
-    scratch[i, 2] := x[i];
-    y[i] := sum(scratch[i, :]);
-  end for;
-end doubled;
-";
+    let script = include_str!("functions/sizes.mo");
     assert_eq!(run(script, "doubled({1, 2, 3})"), "{2.0, 4.0, 6.0}");
     assert_eq!(run(script, "doubled(fill(1.0, 0))"), "{}");
     assert!(run_fails(&format!("{script} y := doubled(1);")).starts_with("size-mismatch: `x`"));
@@ -123,18 +109,7 @@ function endless input Integer n; output Integer y; algorithm y := endless(n + 1
 
 #[test]
 fn return_leaves_the_function() {
-    let script = "
-function first input Real x[:]; output Integer y;
-algorithm
-  for i in 1:size(x, 1) loop
-    while true loop
-      if x[i] > 0 then y := i; return; end if;
-      break;
-    end while;
-  end for;
-  y := 0;
-end first;
-";
+    let script = include_str!("functions/return.mo");
     assert_eq!(run(script, "first({-1, 0, 5, 6})"), "3");
     assert_eq!(run(script, "first({-1})"), "0");
 }

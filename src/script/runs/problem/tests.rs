@@ -11,22 +11,7 @@ mod meanings;
 mod stopping;
 mod values;
 
-const MODEL: &str = "model Tank
-  parameter Real k(unit = \"1/s\") = 1;
-  parameter Real area = 1;
-  parameter Real gain = 1;
-  input Real u;
-  Real h(start = 1, fixed = true);
-  output Real q;
-  output Real p;
-equation
-  area*der(h) = u - k*h;
-  q = k*h;
-  p = gain*h;
-end Tank;
-model Free
-  extends Tank(u = 0);
-end Free;";
+const MODEL: &str = include_str!("tests/model.mo");
 
 /// h of the tank: k = 0.8, area = 2, from h0, with the inflow u.
 fn height(time: f64, h0: f64, u: f64) -> f64 {
@@ -362,27 +347,7 @@ const DATA: fn(f64) -> String = |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).
 
 #[test]
 fn fitness_may_be_a_function_written_in_modelica() {
-    let functions = "
-function distance
-  input Real simulated[:];
-  input Real measured[:];
-  output Real largest = max(abs(simulated - measured));
-end distance;
-function squares
-  input Real simulated[:];
-  input Real measured[:];
-  input Real weights[:];
-  output Real sum;
-algorithm
-  sum := 0;
-  for k in 1:size(simulated, 1) loop
-    sum := sum + (weights[k]*(simulated[k] - measured[k]))^2;
-  end for;
-end squares;
-function undecided
-  input Real x;
-  output Real y = x;
-end undecided;";
+    let functions = include_str!("tests/fitness.mo");
     let with = |name: &str| {
         let own = format!("fitness = \"{name}\"\nfiles = [\"tank.mo\", \"f.mo\"]\n");
         let problem = SIMPLE.replace("files = [\"tank.mo\"]\n", &own);

@@ -30,23 +30,7 @@ const NOTHING: [&str; 0] = [];
 
 #[test]
 fn the_outside_decides_about_overdetermined_connectors() {
-    let conductor = "\
-  model Conductor
-    Phasor p, n;
-    parameter Real G = 1;
-  equation
-    Connections.branch(p.reference, n.reference);
-    p.reference.gamma = n.reference.gamma;
-    p.i = G*(p.v - n.v);
-    p.i + n.i = 0;
-  end Conductor;
-  model Sensor
-    Phasor p;
-    RealOutput gamma = p.reference.gamma;
-  equation
-    p.i = 0;
-  end Sensor;
-";
+    let conductor = include_str!("../../../data/models/libraries_overdetermined_conductor.mo");
     assert_eq!(found(conductor), NOTHING);
     // With plain connectors an equation that is missing is a mistake.
     let wrong = "\
@@ -63,44 +47,8 @@ fn the_outside_decides_about_overdetermined_connectors() {
 
 #[test]
 fn a_class_that_whoever_uses_it_replaces_may_be_partial() {
-    let medium = "\
-  partial package PartialMedium
-    replaceable partial function density
-      input Real T;
-      output Real d;
-    end density;
-    replaceable partial model BaseProperties
-      Real d;
-    end BaseProperties;
-  end PartialMedium;
-  partial model PartialLaw
-    Real y;
-  end PartialLaw;
-  package Water
-    extends PartialMedium;
-    redeclare function extends density
-    algorithm
-      d := 1000 - T;
-    end density;
-  end Water;
-";
-    let generic = "\
-  model Sensor
-    replaceable package Medium = PartialMedium;
-    RealInput T;
-    RealOutput d = Medium.density(T);
-  end Sensor;
-  model Volume
-    extends Sensor;
-    Medium.BaseProperties properties;
-  end Volume;
-  model Fitting
-    replaceable PartialLaw law;
-  end Fitting;
-  model Complete
-    Sensor sensor(redeclare package Medium = Water, T = 1);
-  end Complete;
-";
+    let medium = include_str!("../../../data/models/libraries_partial_medium.mo");
+    let generic = include_str!("../../../data/models/libraries_partial_generic.mo");
     assert_eq!(found(&format!("{medium}{generic}")), NOTHING);
     let wrong = "\
   model Direct
@@ -161,54 +109,7 @@ fn a_part_has_no_world_of_its_own() {
 
 #[test]
 fn counts_of_records_and_of_bound_inputs_are_not_guessed() {
-    let classes = "\
-  connector ComplexOutput = output Complex;
-  function fromPolar
-    input Real length;
-    input Real phi;
-    output Complex c(re = length*cos(phi), im = length*sin(phi));
-  end fromPolar;
-  block Phases
-    RealInput u;
-    ComplexOutput y[3] = fromPolar(fill(u, 3), {0, 2, 4});
-  end Phases;
-  block Equations
-    RealInput u;
-    ComplexOutput y[3];
-  equation
-    y = fromPolar(fill(u, 3), {0, 2, 4});
-  end Equations;
-  model Source
-    parameter Boolean useInput = false;
-    Pin p;
-    RealInput i_in = i if useInput;
-    Real i;
-  equation
-    if not useInput then
-      i = 1;
-    end if;
-    p.i = -i;
-  end Source;
-  block Clock
-    RealOutput y = time;
-  end Clock;
-  model Ground
-    Pin p;
-  equation
-    p.v = 0;
-  end Ground;
-  model Complete
-    Phases a(u = time);
-    Equations b(u = time);
-    Clock clock;
-    Source fixed, given(useInput = true);
-    Ground one, other;
-  equation
-    connect(clock.y, given.i_in);
-    connect(fixed.p, one.p);
-    connect(given.p, other.p);
-  end Complete;
-";
+    let classes = include_str!("../../../data/models/libraries_counts_classes.mo");
     assert_eq!(found(classes), NOTHING);
 }
 

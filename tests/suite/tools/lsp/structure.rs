@@ -255,29 +255,7 @@ fn states_of_media_and_literals_in_annotations_are_completed() {
     let here = folder(&[]);
     let mut client = Client::start(here.path());
     let path = here.path().join("P.mo");
-    let text = "package P
-  partial package PartialMedium
-    replaceable record State
-    end State;
-    replaceable model BaseProperties
-      State state;
-    end BaseProperties;
-  end PartialMedium;
-  package Water
-    extends PartialMedium;
-    redeclare record extends State
-      Real p;
-      Real T;
-    end State;
-  end Water;
-  model M
-    replaceable package Medium = Water;
-    Medium.BaseProperties medium;
-    Real p = medium.state.p;
-    annotation(Icon(graphics = {Line(smooth = Smooth.Bezier)}));
-  end M;
-end P;
-";
+    let text = include_str!("../../../data/models/structure_media.mo");
     client.open(&path, text);
     assert_eq!(offered(&mut client, &path, text, "= medium.state."), ["p", "T"]);
     assert_eq!(offered(&mut client, &path, text, "smooth = Smooth."), ["None", "Bezier"]);
