@@ -9,7 +9,7 @@ const MOST_ROWS: usize = 5;
 const MOST_NAMES: usize = 3;
 
 /// The hardest variables, relations and loops; empty where there are none.
-pub fn table(hardest: &Hardest) -> String {
+pub(crate) fn table(hardest: &Hardest) -> String {
     let steps: u64 = hardest.unknowns.iter().map(|(_, count)| count).sum();
     let share = |count: u64| 100.0 * count as f64 / steps as f64;
     let unknowns = hardest

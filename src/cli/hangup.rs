@@ -86,7 +86,7 @@ pub(super) fn watch(interrupt: &Arc<AtomicBool>, noticed: Arc<AtomicBool>) {
 }
 
 /// Whether the process was started to continue without its terminal.
-pub(super) fn outlives_terminal() -> bool {
+fn outlives_terminal() -> bool {
     #[cfg(unix)]
     return super::signals::ignores_hangup();
     #[cfg(not(unix))]

@@ -240,7 +240,7 @@ impl Area<'_> {
     }
 
     /// Grid, frame and series, without labels.
-    pub fn draw_data(&self, svg: &mut Svg, panel: &Panel) {
+    pub(crate) fn draw_data(&self, svg: &mut Svg, panel: &Panel) {
         self.draw_grid(svg);
         if panel.zero_line {
             self.draw_level(svg, 0.0, self.look.zero);
@@ -331,7 +331,7 @@ impl Area<'_> {
     }
 
     /// The numbers beside the vertical axis.
-    pub fn label_rows(&self, svg: &mut Svg, writing: Writing) {
+    pub(crate) fn label_rows(&self, svg: &mut Svg, writing: Writing) {
         for (value, label) in &self.y.major {
             if let Some(y) = self.y_of(*value) {
                 svg.text((self.left - 8.0, y + 4.2), Anchor::End, writing, label);
@@ -340,7 +340,7 @@ impl Area<'_> {
     }
 
     /// The numbers below the horizontal axis.
-    pub fn label_columns(&self, svg: &mut Svg, writing: Writing) {
+    pub(crate) fn label_columns(&self, svg: &mut Svg, writing: Writing) {
         for (value, label) in &self.x.major {
             if let Some(x) = self.x_of(*value) {
                 svg.text((x, self.bottom() + 18.0), Anchor::Middle, writing, label);

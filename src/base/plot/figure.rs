@@ -113,7 +113,7 @@ pub enum Mark {
 
 /// What a variable is called beside an axis: its description, up to a bracket or the end of a clause, if
 /// that is short; else its name.
-pub(super) fn quantity<'t>(name: &'t str, description: &'t str) -> &'t str {
+fn quantity<'t>(name: &'t str, description: &'t str) -> &'t str {
     /// Letters that fit beside an axis of a small figure.
     const LONGEST: usize = 28;
     let clause = description.split(['(', '[', '{', '=', ';', ':', ',']).next().unwrap_or_default();

@@ -8,9 +8,9 @@ use std::borrow::Cow;
 
 /// How figures look.
 #[derive(Debug)]
-pub struct Look {
+pub(crate) struct Look {
     pub(super) width: f64,
-    pub(super) ink: &'static str,
+    ink: &'static str,
     pub(super) paper: &'static str,
     /// Attributes of lines.
     pub(super) frame: &'static str,
@@ -21,7 +21,7 @@ pub struct Look {
     /// Whether faint colours are mixed with white instead of being transparent: svg2pdf 0.13 lists
     /// several transparencies in the order of a hash map, and the same figure must give the same
     /// bytes.
-    pub(super) solid: bool,
+    solid: bool,
     /// Whether the legend is part of the figure.
     pub(super) legend: bool,
     /// Whether areas and series say what they are, for the script of a page.
@@ -29,7 +29,7 @@ pub struct Look {
 }
 
 /// A figure on white paper.
-pub static FILE: Look = Look {
+pub(crate) static FILE: Look = Look {
     width: 640.0,
     ink: "#222222",
     paper: "#ffffff",
@@ -53,7 +53,7 @@ pub(crate) static SOLID: Look = Look { solid: true, ..FILE };
 pub(crate) static PAGE: Look = page(480.0);
 
 /// A figure of which three stand side by side on a screen of 1280 pixels; they have one legend.
-pub static SMALL: Look = Look { legend: false, ..page(380.0) };
+pub(crate) static SMALL: Look = Look { legend: false, ..page(380.0) };
 
 /// The legend of figures that stand side by side.
 pub(crate) static LEGEND: Look = page(350.0);
@@ -99,7 +99,7 @@ impl Look {
     }
 
     /// Plain text of this size.
-    pub fn writing(&self, size: f64) -> Writing {
+    pub(crate) fn writing(&self, size: f64) -> Writing {
         Writing { size, bold: false, upright: false, colour: self.ink }
     }
 }

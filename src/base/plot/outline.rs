@@ -8,7 +8,7 @@ use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 /// The outlines of a line of text as the data of an SVG path that begins at the origin, and how
 /// wide it is. A letter that the face does not have is drawn as its empty box.
-pub fn of(text: &str, size: f64, bold: bool) -> (String, f64) {
+pub(crate) fn of(text: &str, size: f64, bold: bool) -> (String, f64) {
     let font = if bold { dejavu::sans::bold() } else { dejavu::sans::regular() };
     let Ok(face) = Face::parse(font, 0) else { return (String::new(), 0.0) };
     let scale = size / f64::from(face.units_per_em());

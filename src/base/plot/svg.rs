@@ -199,7 +199,7 @@ fn escape(text: &str) -> String {
 
 /// Writes `10^{-3}` with raised digits. They are letters of their own, not shifted parts: viewers
 /// disagree about where shifted parts of centred text lie.
-pub fn raised(text: &str) -> String {
+pub(crate) fn raised(text: &str) -> String {
     let mut parts = text.split("^{");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {

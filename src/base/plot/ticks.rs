@@ -5,7 +5,7 @@ use crate::elementary;
 
 /// An axis with its range decided.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ticks {
+pub(crate) struct Ticks {
     pub(super) scale: Scale,
     pub(super) low: f64,
     pub(super) high: f64,
@@ -19,7 +19,7 @@ pub struct Ticks {
 
 impl Ticks {
     /// Ticks for these values, about `count` of them; values that cannot be shown do not count.
-    pub fn new(values: impl Iterator<Item = f64>, scale: Scale, count: usize) -> Ticks {
+    pub(crate) fn new(values: impl Iterator<Item = f64>, scale: Scale, count: usize) -> Ticks {
         let shown = values.filter(|value| is_shown(*value, scale));
         let range = shown.fold(None, |range: Option<(f64, f64)>, value| {
             let (low, high) = range.unwrap_or((value, value));
@@ -40,7 +40,7 @@ impl Ticks {
     }
 
     /// The place of a value between 0 and 1; `None` if it cannot be shown.
-    pub fn place(&self, value: f64) -> Option<f64> {
+    pub(crate) fn place(&self, value: f64) -> Option<f64> {
         if !is_shown(value, self.scale) {
             return None;
         }

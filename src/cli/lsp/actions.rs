@@ -14,7 +14,7 @@ use lsp_types::{
 use std::ops::Range;
 
 /// The actions for some diagnostics of a document.
-pub fn actions(
+pub(crate) fn actions(
     client: &Client,
     parsed: &Parsed,
     diagnostics: &[Diagnostic],

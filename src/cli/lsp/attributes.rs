@@ -14,7 +14,7 @@ use crate::syntax::print;
 const MAX_TYPES: usize = 50;
 
 /// An attribute of a component, as it is written; strings without quotation marks.
-pub fn attribute(
+pub(crate) fn attribute(
     library: &Library,
     owner: ClassId,
     name: Ident,
@@ -69,7 +69,7 @@ fn argument<'a>(arguments: &'a [Argument], name: &str) -> Option<&'a Expression>
 }
 
 /// The value of a modification.
-pub fn value(modification: &Modification) -> Option<&Expression> {
+pub(crate) fn value(modification: &Modification) -> Option<&Expression> {
     match &modification.binding {
         Some(Binding::Expression(value)) => Some(value),
         _ => None,

@@ -23,7 +23,7 @@ const WIDEST: usize = 200;
 const ATTRIBUTES: &[&str] = &["unit", "displayUnit", "quantity", "min", "max", "start", "nominal"];
 
 /// A name in words; `None` where there is nothing to say.
-pub fn markdown(library: &Library, entity: Entity) -> Option<String> {
+pub(crate) fn markdown(library: &Library, entity: Entity) -> Option<String> {
     match entity {
         Entity::Declared(Declared::Class(class)) => Some(of_class(library, class)),
         Entity::Declared(Declared::Component(owner, name)) => component(library, owner, name),
@@ -38,7 +38,7 @@ pub fn markdown(library: &Library, entity: Entity) -> Option<String> {
 }
 
 /// What a class says of itself, and the classes in it.
-pub struct Described<'a> {
+pub(crate) struct Described<'a> {
     /// Its keyword.
     pub keyword: &'static str,
     /// Its description.
@@ -50,7 +50,7 @@ pub struct Described<'a> {
 }
 
 /// What a class says of itself.
-pub fn described(definition: &ClassDefinition) -> Described<'_> {
+pub(crate) fn described(definition: &ClassDefinition) -> Described<'_> {
     let nested = elements(definition).filter_map(|element| match element {
         Element::Class(nested) => Some(&*nested.class),
         _ => None,
@@ -110,7 +110,7 @@ fn component(library: &Library, owner: ClassId, name: Ident) -> Option<String> {
 }
 
 /// The declaration of one component, without comment and annotation.
-pub fn declared(clause: &ComponentClause, declaration: &ComponentDeclaration) -> String {
+pub(crate) fn declared(clause: &ComponentClause, declaration: &ComponentDeclaration) -> String {
     let mut text = prefixes(clause);
     text += &clause.type_specifier.name.to_string();
     let subscripts = |subscripts: &[_]| match subscripts {
@@ -163,7 +163,7 @@ fn prefixes(clause: &ComponentClause) -> String {
 }
 
 /// The description string of a class.
-pub fn comment(definition: &ClassDefinition) -> Option<&str> {
+pub(crate) fn comment(definition: &ClassDefinition) -> Option<&str> {
     match &definition.specifier {
         ClassSpecifier::Long(long) => long.description.as_deref(),
         ClassSpecifier::Short(short) => short.comment.text.as_deref(),

@@ -9,10 +9,10 @@ use lsp_types::{
 use std::ops;
 
 /// What precedes an action in a message.
-pub const HELP: &str = "help: ";
+pub(crate) const HELP: &str = "help: ";
 
 /// A diagnostic of a document; `location` says where a span is in the protocol.
-pub fn of(
+pub(crate) fn of(
     parsed: &Parsed,
     diagnostic: &Diagnostic,
     location: impl Fn(Span) -> Option<Location>,

@@ -77,12 +77,12 @@ impl Document {
     }
 
     /// Whether it is a file of TOML, of which only problems are read.
-    pub fn is_toml(&self) -> bool {
+    pub(crate) fn is_toml(&self) -> bool {
         self.uri.as_str().ends_with(".toml")
     }
 
     /// Whether its file is one of classes.
-    pub fn is_modelica(&self) -> bool {
+    pub(crate) fn is_modelica(&self) -> bool {
         self.uri.as_str().ends_with(".mo")
     }
 

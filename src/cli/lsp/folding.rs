@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const ANNOTATION: &str = "annotation(…)";
 
 /// The ranges of a document; of those that begin on one line the longest.
-pub fn ranges(parsed: &Parsed) -> Vec<FoldingRange> {
+pub(crate) fn ranges(parsed: &Parsed) -> Vec<FoldingRange> {
     let mut all = Collector { parsed, by_line: BTreeMap::new() };
     for (_, class) in parsed.all_classes() {
         all.class(&class);

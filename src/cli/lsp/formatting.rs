@@ -10,7 +10,7 @@ use lsp_types::TextEdit;
 ///
 /// # Errors
 /// Formatting would change tokens.
-pub fn edits(document: &Document) -> Result<Vec<TextEdit>, Refusal> {
+pub(crate) fn edits(document: &Document) -> Result<Vec<TextEdit>, Refusal> {
     if document.is_toml() {
         return Ok(Vec::new());
     }

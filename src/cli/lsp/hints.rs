@@ -16,7 +16,7 @@ use std::ops::Range;
 type Given = (Span, Span);
 
 /// The units in some bytes of a document.
-pub fn hints(
+pub(crate) fn hints(
     library: &Library,
     parsed: &Parsed,
     names: &[Occurrence],

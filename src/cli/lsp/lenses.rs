@@ -8,13 +8,13 @@ use lsp_types::{CodeLens, Command};
 use serde_json::json;
 
 /// The command that simulates a model: its arguments are the file and the class.
-pub const SIMULATE: &str = "gapilib.simulate";
+pub(crate) const SIMULATE: &str = "gapilib.simulate";
 
 /// The command that runs a problem file: its argument is the file.
-pub const IDENTIFY: &str = "gapilib.identify";
+pub(crate) const IDENTIFY: &str = "gapilib.identify";
 
 /// The lens above a problem file.
-pub fn problem(document: &Document) -> Vec<CodeLens> {
+pub(crate) fn problem(document: &Document) -> Vec<CodeLens> {
     let Some(path) = document.path.as_ref().filter(|_| document.is_problem()) else {
         return Vec::new();
     };
@@ -27,7 +27,7 @@ pub fn problem(document: &Document) -> Vec<CodeLens> {
 }
 
 /// A lens above each model and block that is not partial, in a file that was saved once.
-pub fn models(parsed: &Parsed) -> Vec<CodeLens> {
+pub(crate) fn models(parsed: &Parsed) -> Vec<CodeLens> {
     let document = &parsed.document;
     let Some(path) = document.path.as_ref().filter(|_| !document.is_script()) else {
         return Vec::new();

@@ -12,7 +12,7 @@ use lsp_types::{DocumentLink, Uri};
 const SCHEME: &str = "modelica://";
 
 /// The links of a document whose files are there.
-pub fn links(workspace: &mut Workspace, parsed: &Parsed) -> Vec<DocumentLink> {
+pub(crate) fn links(workspace: &mut Workspace, parsed: &Parsed) -> Vec<DocumentLink> {
     let document = &parsed.document;
     let places = document.text.match_indices(SCHEME).map(|(start, _)| {
         let address = &document.text[start + SCHEME.len()..];

@@ -20,7 +20,7 @@ use std::sync::Arc;
 const MOST_FILES: usize = 20_000;
 
 /// A name at a position: the document, all its names, and the one.
-pub struct Found {
+pub(crate) struct Found {
     /// The document.
     pub parsed: Arc<Parsed>,
     /// Its names.
@@ -30,7 +30,7 @@ pub struct Found {
 }
 
 /// The name at a position.
-pub fn at(
+pub(crate) fn at(
     workspace: &mut Workspace,
     document: &Arc<Document>,
     all: &Documents,
@@ -43,7 +43,7 @@ pub fn at(
 }
 
 /// Where a declaration is written; `None` for what is not declared in a text.
-pub fn declaration(library: &Library, declared: Declared) -> Option<Span> {
+pub(crate) fn declaration(library: &Library, declared: Declared) -> Option<Span> {
     match declared {
         Declared::Class(class) => Some(library.definition_of(class).name.span),
         Declared::Component(owner, name) => {
@@ -63,7 +63,7 @@ fn literal(library: &Library, owner: ClassId, name: Ident) -> Option<Span> {
 }
 
 /// Where a name is declared.
-pub fn definition(workspace: &mut Workspace, found: &Found) -> Option<Location> {
+pub(crate) fn definition(workspace: &mut Workspace, found: &Found) -> Option<Location> {
     let document = &found.parsed.document;
     let here = |range: std::ops::Range<usize>| Location {
         uri: document.uri.clone(),
@@ -94,7 +94,7 @@ pub(crate) fn highlights(found: &Found) -> Vec<DocumentHighlight> {
 }
 
 /// A document in which a name occurs, with the places.
-pub struct Places {
+pub(crate) struct Places {
     /// The document.
     pub document: Arc<Document>,
     /// The places.
@@ -102,7 +102,7 @@ pub struct Places {
 }
 
 /// All places of a name: in open documents, and in the files of the libraries that they belong to.
-pub fn references(workspace: &mut Workspace, found: &Found, all: &Documents) -> Vec<Places> {
+pub(crate) fn references(workspace: &mut Workspace, found: &Found, all: &Documents) -> Vec<Places> {
     let same = |names: &[Occurrence]| -> Vec<Occurrence> {
         names.iter().filter(|one| one.entity == found.one.entity).cloned().collect()
     };
@@ -133,7 +133,7 @@ pub fn references(workspace: &mut Workspace, found: &Found, all: &Documents) -> 
 }
 
 /// The folder of the outermost package that a file belongs to, or the folder of the file.
-pub fn root(workspace: &Workspace, path: &Path) -> Option<PathBuf> {
+pub(crate) fn root(workspace: &Workspace, path: &Path) -> Option<PathBuf> {
     let folder = path.parent()?;
     let is_package = |one: &&Path| workspace.session.world.exists(&one.join("package.mo"));
     Some(folder.ancestors().take_while(is_package).last().unwrap_or(folder).to_path_buf())

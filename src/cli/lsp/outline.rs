@@ -12,7 +12,7 @@ use lsp_types::{DocumentSymbol, Location, SymbolInformation, SymbolKind};
 use std::collections::BTreeSet;
 
 /// The symbols of a document.
-pub fn symbols(parsed: &Parsed) -> Vec<DocumentSymbol> {
+pub(crate) fn symbols(parsed: &Parsed) -> Vec<DocumentSymbol> {
     let document = &parsed.document;
     match &parsed.tree {
         None => Vec::new(),
@@ -33,7 +33,7 @@ pub fn symbols(parsed: &Parsed) -> Vec<DocumentSymbol> {
 }
 
 /// The package that a file is in, as it says.
-pub fn package(parsed: &Parsed) -> Option<String> {
+pub(crate) fn package(parsed: &Parsed) -> Option<String> {
     match &parsed.tree {
         Some(Tree::Classes(file)) => file.within.as_ref().map(|within| within.node.to_string()),
         _ => None,
@@ -43,7 +43,7 @@ pub fn package(parsed: &Parsed) -> Option<String> {
 
 /// The same for clients that do not know trees.
 #[allow(deprecated, reason = "the field must be given")]
-pub fn flat(document: &Document, symbols: Vec<DocumentSymbol>) -> Vec<SymbolInformation> {
+pub(crate) fn flat(document: &Document, symbols: Vec<DocumentSymbol>) -> Vec<SymbolInformation> {
     let mut found = Vec::new();
     let mut pending: Vec<(DocumentSymbol, Option<String>)> =
         symbols.into_iter().rev().map(|symbol| (symbol, None)).collect();

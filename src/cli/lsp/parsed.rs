@@ -65,7 +65,7 @@ pub(crate) fn classes_of(tree: &Tree) -> Vec<&Arc<ClassDefinition>> {
 }
 
 /// A tree as the file that a library loads.
-pub fn file_of(tree: &Tree) -> StoredDefinition {
+pub(crate) fn file_of(tree: &Tree) -> StoredDefinition {
     match tree {
         Tree::Classes(file) => file.clone(),
         Tree::Script(script) => {
@@ -76,7 +76,7 @@ pub fn file_of(tree: &Tree) -> StoredDefinition {
 }
 
 /// The elements of a class; none of a short one.
-pub fn elements(class: &ClassDefinition) -> impl Iterator<Item = &Element> {
+pub(crate) fn elements(class: &ClassDefinition) -> impl Iterator<Item = &Element> {
     sections(class).iter().flat_map(|section| match section {
         Section::Elements { elements, .. } => elements.as_slice(),
         _ => &[],
@@ -84,7 +84,7 @@ pub fn elements(class: &ClassDefinition) -> impl Iterator<Item = &Element> {
 }
 
 /// The sections of a class; none of a short one.
-pub fn sections(class: &ClassDefinition) -> &[Section] {
+pub(crate) fn sections(class: &ClassDefinition) -> &[Section] {
     match &class.specifier {
         ClassSpecifier::Long(long) => &long.sections,
         _ => &[],

@@ -34,7 +34,7 @@ impl Tree {
 
 /// A text as far as it could be read.
 #[derive(Debug)]
-pub struct Read {
+pub(crate) struct Read {
     /// What it contains, lines that cannot be read left out; `None` if that does not help.
     pub tree: Option<Tree>,
     /// Its syntax errors.
@@ -42,7 +42,7 @@ pub struct Read {
 }
 
 /// Reads a text.
-pub fn read(source: SourceId, text: &str, is_script: bool) -> Read {
+pub(crate) fn read(source: SourceId, text: &str, is_script: bool) -> Read {
     match Tree::of(source, text, is_script) {
         Ok(tree) => Read { tree: Some(tree), errors: Vec::new() },
         Err(errors) => {

@@ -15,7 +15,11 @@ use lsp_types::{
 ///
 /// # Errors
 /// Why it cannot.
-pub fn check(workspace: &mut Workspace, found: &Found, all: &Documents) -> Result<(), Refusal> {
+pub(crate) fn check(
+    workspace: &mut Workspace,
+    found: &Found,
+    all: &Documents,
+) -> Result<(), Refusal> {
     let Entity::Declared(declared) = found.one.entity else {
         return match found.one.entity {
             Entity::Function(name) => {
@@ -78,7 +82,7 @@ fn is_named_by_file(workspace: &mut Workspace, class: crate::flatten::ClassId) -
 ///
 /// # Errors
 /// It is not an identifier, another element has it already, or what it means cannot be renamed.
-pub fn edits(
+pub(crate) fn edits(
     workspace: &mut Workspace,
     found: &Found,
     all: &Documents,

@@ -16,7 +16,7 @@ use lsp_types::{
 use std::sync::Arc;
 
 /// The function or record around a position, and which of its inputs is being written.
-pub fn help(
+pub(crate) fn help(
     workspace: &mut Workspace,
     document: &Arc<Document>,
     all: &Documents,

@@ -31,7 +31,7 @@ const READONLY: u32 = 2;
 const DEFAULT_LIBRARY: u32 = 4;
 
 /// What the numbers mean.
-pub fn legend() -> SemanticTokensLegend {
+pub(crate) fn legend() -> SemanticTokensLegend {
     SemanticTokensLegend {
         token_types: TYPES.to_vec(),
         token_modifiers: vec![
@@ -47,7 +47,11 @@ fn number(kind: &SemanticTokenType) -> u32 {
 }
 
 /// The tokens of a document, each in one line, as differences.
-pub fn tokens(library: &Library, parsed: &Parsed, names: &[Occurrence]) -> Vec<SemanticToken> {
+pub(crate) fn tokens(
+    library: &Library,
+    parsed: &Parsed,
+    names: &[Occurrence],
+) -> Vec<SemanticToken> {
     if parsed.document.is_toml() {
         return Vec::new();
     }

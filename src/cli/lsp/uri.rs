@@ -27,7 +27,7 @@ const ESCAPED: &AsciiSet = &CONTROLS
 /// The path of a `file:` name; `None` for others, such as those of documents never saved, and for those
 /// of other machines (RFC 8089 §2): a part of the path in the place of the machine would name a file
 /// far above the one that was meant.
-pub fn path(uri: &Uri) -> Option<PathBuf> {
+pub(crate) fn path(uri: &Uri) -> Option<PathBuf> {
     let rest = uri.as_str().strip_prefix("file://")?;
     let (machine, path) = rest.split_at(rest.find('/')?);
     if !(machine.is_empty() || machine.eq_ignore_ascii_case("localhost")) {
@@ -40,7 +40,7 @@ pub fn path(uri: &Uri) -> Option<PathBuf> {
 }
 
 /// The `file:` name of an absolute path; `None` for a relative one.
-pub fn of_path(path: &Path) -> Option<Uri> {
+pub(crate) fn of_path(path: &Path) -> Option<Uri> {
     if !path.is_absolute() {
         return None;
     }

@@ -17,7 +17,11 @@ const MOST: usize = 256;
 
 /// The classes whose names contain the query, in whatever case: of open documents, and of the files in
 /// the folders that the editor shows and in the libraries of open documents.
-pub fn symbols(workspace: &mut Workspace, all: &Documents, query: &str) -> Vec<SymbolInformation> {
+pub(crate) fn symbols(
+    workspace: &mut Workspace,
+    all: &Documents,
+    query: &str,
+) -> Vec<SymbolInformation> {
     let query = query.to_lowercase();
     let mut found = Vec::new();
     let mut seen = BTreeSet::new();

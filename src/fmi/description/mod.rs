@@ -178,7 +178,7 @@ impl BaseUnit {
 }
 
 /// The base units, in the order of [`BaseUnit::exponents`].
-pub const BASE_UNITS: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
+pub(crate) const BASE_UNITS: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 
 /// value shown = factor · value + offset, of 1/value where it is inverse.
 #[derive(Debug, Clone, PartialEq)]

@@ -182,7 +182,7 @@ impl Kind {
     }
 
     /// The type of this name in FMI 2.0.
-    pub fn of_word_2(word: &str) -> Option<Kind> {
+    pub(crate) fn of_word_2(word: &str) -> Option<Kind> {
         Some(match word {
             "Real" => Kind::Float64,
             "Integer" => Kind::Int32,
@@ -194,7 +194,7 @@ impl Kind {
     }
 
     /// Its name in FMI 2.0; `None` for types which that has not.
-    pub fn word_2(self) -> Option<&'static str> {
+    pub(crate) fn word_2(self) -> Option<&'static str> {
         Some(match self {
             Kind::Float64 => "Real",
             Kind::Int32 => "Integer",

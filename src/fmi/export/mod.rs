@@ -198,7 +198,7 @@ pub fn identifier(name: &str) -> String {
 }
 
 /// Kinds of messages, each with what it is.
-pub const LOG_CATEGORIES: &[(&str, &str)] = &[
+pub(crate) const LOG_CATEGORIES: &[(&str, &str)] = &[
     ("logStatusError", "Why a function has returned an error"),
     ("logStatusWarning", "Warnings of the model: assertions of level warning"),
     ("logEvents", "Events that were handled"),

@@ -19,7 +19,7 @@ pub(super) enum Functions {
 }
 
 /// A shared library of a unit; it stays loaded as long as this lives.
-pub struct Binary {
+pub(crate) struct Binary {
     functions: Functions,
     watch: Arc<CallWatch>,
     _library: Library,
@@ -57,7 +57,11 @@ impl Binary {
     ///
     /// # Errors
     /// Why the system does not load it, in its own words.
-    pub fn load(path: &Path, version: Version, watch: Arc<CallWatch>) -> Result<Binary, String> {
+    pub(crate) fn load(
+        path: &Path,
+        version: Version,
+        watch: Arc<CallWatch>,
+    ) -> Result<Binary, String> {
         watch.enter(watch.number_of("dlopen"));
         // SAFETY: loading runs code of the library, which the user has allowed.
         let library = unsafe { Library::new(path) }.map_err(|error| {
@@ -96,7 +100,7 @@ pub(super) fn text(text: &str) -> CString {
 
 impl Component {
     /// Makes an instance.
-    pub fn new(
+    pub(crate) fn new(
         binary: &Arc<Binary>,
         kind: InterfaceKind,
         identity: &Identity,
@@ -143,7 +147,7 @@ impl Component {
     }
 
     /// Takes its messages out.
-    pub fn messages(&self) -> Vec<super::LogMessage> {
+    pub(crate) fn messages(&self) -> Vec<super::LogMessage> {
         self.log.take()
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// How a call failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Severity {
+pub(crate) enum Severity {
     /// The library does not have the function.
     Missing,
     /// Nothing can be computed with these values.
@@ -31,7 +31,7 @@ pub enum Severity {
 
 /// A call that failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CallError {
+pub(crate) struct CallError {
     /// The function.
     pub function: &'static str,
     /// How.
@@ -40,7 +40,7 @@ pub struct CallError {
 
 impl CallError {
     /// Whether the instance cannot be used any more.
-    pub fn is_final(self) -> bool {
+    pub(crate) fn is_final(self) -> bool {
         self.severity != Severity::Discard
     }
 }

@@ -95,7 +95,7 @@ fn within(function: &'static str, reached: f64, step: (f64, f64)) -> Result<f64,
 /// Initialization and modes.
 impl Component {
     /// Begins the initialization of a simulation.
-    pub fn enter_initialization(
+    pub(crate) fn enter_initialization(
         &self,
         tolerance: Option<f64>,
         (start, stop): (f64, f64),
@@ -113,7 +113,7 @@ impl Component {
     }
 
     /// Ends it.
-    pub fn exit_initialization(&self) -> Result<(), CallError> {
+    pub(crate) fn exit_initialization(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(f) => call!(self, f.exit_initialization),
             Functions::V3(f) => call!(self, f.exit_initialization),
@@ -121,7 +121,7 @@ impl Component {
     }
 
     /// Begins the setting of structural parameters (FMI 3.0).
-    pub fn enter_configuration(&self) -> Result<(), CallError> {
+    pub(crate) fn enter_configuration(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(_) => Ok(()),
             Functions::V3(f) => call!(self, f.enter_configuration),
@@ -129,7 +129,7 @@ impl Component {
     }
 
     /// Ends it.
-    pub fn exit_configuration(&self) -> Result<(), CallError> {
+    pub(crate) fn exit_configuration(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(_) => Ok(()),
             Functions::V3(f) => call!(self, f.exit_configuration),
@@ -137,7 +137,7 @@ impl Component {
     }
 
     /// Begins an event.
-    pub fn enter_event_mode(&self) -> Result<(), CallError> {
+    pub(crate) fn enter_event_mode(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(f) => call!(self, f.enter_event_mode),
             Functions::V3(f) => call!(self, f.enter_event_mode),
@@ -145,7 +145,7 @@ impl Component {
     }
 
     /// Iterates the discrete states at an event until they do not change.
-    pub fn update_discrete_states(&self) -> Result<Update, CallError> {
+    pub(crate) fn update_discrete_states(&self) -> Result<Update, CallError> {
         for _ in 0..MOST_ROUNDS {
             let update = self.update_once()?;
             if !update.needs_another || update.terminates {
@@ -191,7 +191,7 @@ impl Component {
     }
 
     /// Ends an event of model exchange.
-    pub fn enter_continuous_mode(&self) -> Result<(), CallError> {
+    pub(crate) fn enter_continuous_mode(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(f) => call!(self, f.enter_continuous_mode),
             Functions::V3(f) => call!(self, f.enter_continuous_mode),
@@ -199,7 +199,7 @@ impl Component {
     }
 
     /// Ends an event of co-simulation (FMI 3.0).
-    pub fn enter_step_mode(&self) -> Result<(), CallError> {
+    pub(crate) fn enter_step_mode(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(_) => Ok(()),
             Functions::V3(f) => call!(self, f.enter_step_mode),
@@ -207,7 +207,7 @@ impl Component {
     }
 
     /// Ends the simulation.
-    pub fn terminate(&self) -> Result<(), CallError> {
+    pub(crate) fn terminate(&self) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(f) => call!(self, f.terminate),
             Functions::V3(f) => call!(self, f.terminate),
@@ -218,7 +218,7 @@ impl Component {
 /// Model exchange.
 impl Component {
     /// Sets the time.
-    pub fn set_time(&self, time: f64) -> Result<(), CallError> {
+    pub(crate) fn set_time(&self, time: f64) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(f) => call!(self, f.set_time, time),
             Functions::V3(f) => call!(self, f.set_time, time),
@@ -226,7 +226,7 @@ impl Component {
     }
 
     /// Sets the continuous states.
-    pub fn set_states(&self, states: &[f64]) -> Result<(), CallError> {
+    pub(crate) fn set_states(&self, states: &[f64]) -> Result<(), CallError> {
         match self.functions() {
             _ if states.is_empty() => Ok(()),
             Functions::V2(f) => call!(self, f.set_states, states.as_ptr(), states.len()),
@@ -235,7 +235,7 @@ impl Component {
     }
 
     /// Writes the continuous states.
-    pub fn states(&self, out: &mut [f64]) -> Result<(), CallError> {
+    pub(crate) fn states(&self, out: &mut [f64]) -> Result<(), CallError> {
         match self.functions() {
             _ if out.is_empty() => Ok(()),
             Functions::V2(f) => call!(self, f.get_states, out.as_mut_ptr(), out.len()),
@@ -244,7 +244,7 @@ impl Component {
     }
 
     /// Writes the derivatives of the continuous states.
-    pub fn derivatives(&self, out: &mut [f64]) -> Result<(), CallError> {
+    pub(crate) fn derivatives(&self, out: &mut [f64]) -> Result<(), CallError> {
         match self.functions() {
             _ if out.is_empty() => Ok(()),
             Functions::V2(f) => call!(self, f.get_derivatives, out.as_mut_ptr(), out.len()),
@@ -253,7 +253,7 @@ impl Component {
     }
 
     /// Writes the event indicators.
-    pub fn indicators(&self, out: &mut [f64]) -> Result<(), CallError> {
+    pub(crate) fn indicators(&self, out: &mut [f64]) -> Result<(), CallError> {
         match self.functions() {
             _ if out.is_empty() => Ok(()),
             Functions::V2(f) => call!(self, f.get_indicators, out.as_mut_ptr(), out.len()),
@@ -262,7 +262,7 @@ impl Component {
     }
 
     /// The numbers of continuous states and of event indicators (FMI 3.0).
-    pub fn sizes(&self) -> Result<Option<[usize; 2]>, CallError> {
+    pub(crate) fn sizes(&self) -> Result<Option<[usize; 2]>, CallError> {
         let Functions::V3(f) = self.functions() else { return Ok(None) };
         let mut sizes = [0; 2];
         let [states, indicators] = &mut sizes;
@@ -272,7 +272,7 @@ impl Component {
     }
 
     /// Says that a step is completed; whether it leads to an event, and to the end of the simulation.
-    pub fn completed_step(&self) -> Result<[bool; 2], CallError> {
+    pub(crate) fn completed_step(&self) -> Result<[bool; 2], CallError> {
         match self.functions() {
             Functions::V2(f) => {
                 let mut flags = [0; 2];
@@ -290,7 +290,7 @@ impl Component {
     }
 
     /// Writes the derivatives of unknowns along a direction of knowns.
-    pub fn directional_derivative(
+    pub(crate) fn directional_derivative(
         &self,
         [unknowns, knowns]: [&[u32]; 2],
         seed: &[f64],
@@ -310,7 +310,7 @@ impl Component {
 /// Scheduled execution (FMI 3.0).
 impl Component {
     /// Activates the part of a clock.
-    pub fn activate(&self, clock: u32, time: f64) -> Result<(), CallError> {
+    pub(crate) fn activate(&self, clock: u32, time: f64) -> Result<(), CallError> {
         match self.functions() {
             Functions::V2(_) => Ok(()),
             Functions::V3(f) => call!(self, f.activate_partition, clock, time),
@@ -318,7 +318,7 @@ impl Component {
     }
 
     /// The new interval of a clock, if it has changed.
-    pub fn interval(&self, clock: u32) -> Result<Option<f64>, CallError> {
+    pub(crate) fn interval(&self, clock: u32) -> Result<Option<f64>, CallError> {
         /// `fmi3IntervalChanged`
         const CHANGED: c_int = 2;
         let Functions::V3(f) = self.functions() else { return Ok(None) };
@@ -332,14 +332,18 @@ impl Component {
 /// Co-simulation.
 impl Component {
     /// Sets how fast an input changes during the next step (FMI 2.0, where it is Real).
-    pub fn set_input_derivative(&self, reference: u32, derivative: f64) -> Result<(), CallError> {
+    pub(crate) fn set_input_derivative(
+        &self,
+        reference: u32,
+        derivative: f64,
+    ) -> Result<(), CallError> {
         let Functions::V2(f) = self.functions() else { return Ok(()) };
         let (reference, order) = (&raw const reference, &raw const FIRST_ORDER);
         call!(self, f.set_input_derivatives, reference, 1, order, &raw const derivative)
     }
 
     /// That steps end where they begin.
-    pub fn makes_no_progress(&self) -> CallError {
+    pub(crate) fn makes_no_progress(&self) -> CallError {
         let function = match self.functions() {
             Functions::V2(f) => f.do_step.name,
             Functions::V3(f) => f.do_step.name,

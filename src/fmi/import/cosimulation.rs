@@ -71,7 +71,7 @@ impl Points {
 
 impl<'a> CoSimulation<'a> {
     /// A simulation of an instance that has got its values.
-    pub fn new(
+    pub(crate) fn new(
         run: Stepped<'a>,
         description: &Description,
         has_event_mode: bool,
@@ -98,7 +98,7 @@ impl<'a> CoSimulation<'a> {
 
     /// Simulates; the rows are those of the output points, or of all communication points where
     /// these are given by the unit.
-    pub fn simulate(&mut self, out: &mut Trajectory) -> Result<(), Stopped> {
+    pub(crate) fn simulate(&mut self, out: &mut Trajectory) -> Result<(), Stopped> {
         let Settings { start, stop, .. } = *self.run.settings;
         let mut ends = self.begin(out)?;
         let mut number = 0;

@@ -113,7 +113,7 @@ impl Known {
 
 impl States {
     /// What is known of `n` states.
-    pub fn of(description: &Description, n: usize) -> States {
+    pub(crate) fn of(description: &Description, n: usize) -> States {
         let structure = &description.structure.derivatives;
         let variables = &description.variables;
         let state = |at: usize| variables[structure[at].variable].derivative_of;
@@ -166,7 +166,7 @@ fn pattern(description: &Description, states: &[usize]) -> Pattern {
 
 impl<'a> ExchangeSystem<'a> {
     /// A system of an instance that has got its values.
-    pub fn new(
+    pub(crate) fn new(
         component: &'a Component,
         description: &Description,
         (inputs, readings): (Inputs<'a>, Readings),
@@ -197,12 +197,12 @@ impl<'a> ExchangeSystem<'a> {
     }
 
     /// The call that failed last.
-    pub fn failure(&self) -> Option<CallError> {
+    pub(crate) fn failure(&self) -> Option<CallError> {
         self.failure
     }
 
     /// Why derivatives could not be carried on, if it was for these.
-    pub fn refusal(&self) -> Option<&'static str> {
+    pub(crate) fn refusal(&self) -> Option<&'static str> {
         self.refusal
     }
 

@@ -36,7 +36,7 @@ macro_rules! table {
 
         impl $table {
             /// The functions that the library has.
-            pub fn of(library: &Library, watch: &CallWatch) -> $table {
+            pub(crate) fn of(library: &Library, watch: &CallWatch) -> $table {
                 // SAFETY: the standard gives these functions these types.
                 unsafe {
                     $table {

@@ -43,7 +43,7 @@ struct InputVariable {
 
 impl<'a> Inputs<'a> {
     /// Inputs that follow these samples.
-    pub fn new(
+    pub(crate) fn new(
         description: &Description,
         layout: &Layout,
         all: &'a [Samples],
@@ -84,31 +84,31 @@ impl<'a> Inputs<'a> {
     }
 
     /// Whether short steps follow the inputs closer than long ones.
-    pub fn are_approximated(&self) -> bool {
+    pub(crate) fn are_approximated(&self) -> bool {
         !self.has_derivatives && self.followed.iter().any(|input| !input.is_held)
     }
 
     /// Chooses the pieces that hold from `t` on.
-    pub fn seek(&mut self, t: f64) {
+    pub(crate) fn seek(&mut self, t: f64) {
         for input in &mut self.followed {
             input.piece = input.piece_at(t);
         }
     }
 
     /// Chooses the pieces that hold until `t`.
-    pub fn approach(&mut self, t: f64) {
+    pub(crate) fn approach(&mut self, t: f64) {
         for input in &mut self.followed {
             input.piece = input.piece_before(t);
         }
     }
 
     /// Whether an input jumps until `t`; a bend is no event.
-    pub fn jump(&self, t: f64) -> bool {
+    pub(crate) fn jump(&self, t: f64) -> bool {
         self.followed.iter().any(|input| input.jumps(t))
     }
 
     /// When the next piece of an input begins.
-    pub fn next_event(&self, t: f64) -> Option<f64> {
+    pub(crate) fn next_event(&self, t: f64) -> Option<f64> {
         let next = |input: &Followed<'_>| {
             let at = input.piece.map_or(0, |piece| piece + 1);
             input.samples.times.get(at).copied().filter(|time| *time > t)
@@ -117,7 +117,12 @@ impl<'a> Inputs<'a> {
     }
 
     /// Gives the instance the values at `t`: of all inputs, or of those that change between events.
-    pub fn set(&mut self, component: &Component, t: f64, is_event: bool) -> Result<(), CallError> {
+    pub(crate) fn set(
+        &mut self,
+        component: &Component,
+        t: f64,
+        is_event: bool,
+    ) -> Result<(), CallError> {
         for input in &self.followed {
             let variable = &mut self.variables[input.variable];
             variable.values[input.samples.place.element] = input.value(t);
@@ -127,7 +132,7 @@ impl<'a> Inputs<'a> {
 
     /// Gives the instance the values during a step of co-simulation: of all inputs, or of those that change
     /// between events.
-    pub fn set_step(
+    pub(crate) fn set_step(
         &mut self,
         component: &Component,
         step: (f64, f64),

@@ -14,7 +14,7 @@ pub(super) struct Log(Mutex<Vec<LogMessage>>);
 
 impl Log {
     /// Keeps a message.
-    pub fn add(&self, is_problem: bool, category: &str, text: &str) {
+    pub(crate) fn add(&self, is_problem: bool, category: &str, text: &str) {
         let text: String = text.trim().chars().take(LONGEST).collect();
         let category = category.to_owned();
         let message = LogMessage { is_problem, category, text, is_last_of_many: false };
@@ -25,7 +25,7 @@ impl Log {
     }
 
     /// Takes the messages out.
-    pub fn take(&self) -> Vec<LogMessage> {
+    pub(crate) fn take(&self) -> Vec<LogMessage> {
         std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

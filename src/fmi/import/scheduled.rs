@@ -100,7 +100,11 @@ impl Clock {
 
 impl<'a> Scheduled<'a> {
     /// A simulation of an instance that has got its values.
-    pub fn new(run: Stepped<'a>, description: &Description, samples: &[Samples]) -> Scheduled<'a> {
+    pub(crate) fn new(
+        run: Stepped<'a>,
+        description: &Description,
+        samples: &[Samples],
+    ) -> Scheduled<'a> {
         let variables = description.variables.iter().enumerate();
         let own = variables.filter(|(_, variable)| {
             variable.kind == Kind::Clock && variable.causality == Causality::Input
@@ -113,7 +117,7 @@ impl<'a> Scheduled<'a> {
     }
 
     /// Simulates; there are rows at the output points, and before and after ticks.
-    pub fn simulate(&mut self, out: &mut Trajectory) -> Result<(), Stopped> {
+    pub(crate) fn simulate(&mut self, out: &mut Trajectory) -> Result<(), Stopped> {
         let Settings { start, stop, .. } = *self.run.settings;
         self.run.begin(self.run.settings.stop, out)?;
         for clock in &mut self.clocks {

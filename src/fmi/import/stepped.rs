@@ -35,7 +35,7 @@ impl From<CallError> for Stopped {
 
 impl<'a> Stepped<'a> {
     /// A simulation of an instance that has got its values.
-    pub fn new(
+    pub(crate) fn new(
         component: &'a Component,
         (inputs, readings): (Inputs<'a>, Readings),
         settings: &'a Settings,
@@ -53,7 +53,7 @@ impl<'a> Stepped<'a> {
     }
 
     /// Initializes the instance, which is not advanced beyond `stop`.
-    pub fn begin(&mut self, stop: f64, out: &mut Trajectory) -> Result<(), CallError> {
+    pub(crate) fn begin(&mut self, stop: f64, out: &mut Trajectory) -> Result<(), CallError> {
         let Settings { start, tolerance, .. } = *self.settings;
         out.reset(self.readings.count());
         self.component.enter_initialization(Some(tolerance), (start, stop))?;
@@ -63,12 +63,12 @@ impl<'a> Stepped<'a> {
     }
 
     /// Adds a row with the values at the time reached.
-    pub fn record(&mut self, out: &mut Trajectory) -> Result<(), CallError> {
+    pub(crate) fn record(&mut self, out: &mut Trajectory) -> Result<(), CallError> {
         self.record_as(self.time, out)
     }
 
     /// Adds a row with the values now, at a time that differs from the one reached by rounding.
-    pub fn record_as(&mut self, time: f64, out: &mut Trajectory) -> Result<(), CallError> {
+    pub(crate) fn record_as(&mut self, time: f64, out: &mut Trajectory) -> Result<(), CallError> {
         self.readings.read(self.component, &mut self.row)?;
         let last = out.time().last().copied();
         out.push(last.map_or(time, |last| time.max(last)), &self.row);
@@ -79,7 +79,7 @@ impl<'a> Stepped<'a> {
     }
 
     /// Whether the simulation may go on after so many steps.
-    pub fn check_budget(&self, steps: u64) -> Result<(), Stopped> {
+    pub(crate) fn check_budget(&self, steps: u64) -> Result<(), Stopped> {
         let settings = self.settings;
         let is_late =
             settings.time_budget.zip(self.deadline).is_some_and(|(b, end)| (b.clock)() > end);

@@ -25,7 +25,7 @@ pub(super) struct Assignment<'a> {
 
 impl<'a> Assignment<'a> {
     /// The values of a plan, with those that vary.
-    pub fn new(
+    pub(crate) fn new(
         description: &'a Description,
         layout: &Layout,
         plan: &'a Plan,
@@ -49,7 +49,7 @@ impl<'a> Assignment<'a> {
     }
 
     /// Sets structural parameters, then all others.
-    pub fn apply(&self, component: &Component) -> Result<(), CallError> {
+    pub(crate) fn apply(&self, component: &Component) -> Result<(), CallError> {
         let structural = |one: &&Assigned| one.is_structural;
         if self.variables.values().any(|one| structural(&one)) {
             component.enter_configuration()?;
@@ -87,7 +87,7 @@ struct Group {
 
 impl Readings {
     /// Readings of these scalars in this order.
-    pub fn new(description: &Description, layout: &Layout, observed: &[Place]) -> Readings {
+    pub(crate) fn new(description: &Description, layout: &Layout, observed: &[Place]) -> Readings {
         let mut groups: BTreeMap<Kind, (Group, BTreeMap<usize, usize>)> = BTreeMap::new();
         for (reading, place) in observed.iter().enumerate() {
             let variable = &description.variables[place.variable];
@@ -108,12 +108,12 @@ impl Readings {
     }
 
     /// Number of readings.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.count
     }
 
     /// Writes the values that the instance has now.
-    pub fn read(&mut self, component: &Component, out: &mut [f64]) -> Result<(), CallError> {
+    pub(crate) fn read(&mut self, component: &Component, out: &mut [f64]) -> Result<(), CallError> {
         for group in &mut self.groups {
             component.get(group.kind, &group.references, &mut group.values)?;
             group.picked.iter().for_each(|(from, to)| out[*to] = group.values[*from]);

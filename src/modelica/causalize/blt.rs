@@ -134,7 +134,7 @@ pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Op
 /// declares is used as its author intends: the pressure drops of IBPSA and their inverses differ
 /// where both are made smooth, and the reference results of its dampers have the values of the
 /// inverses.
-pub(super) fn explicit_alone(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
+fn explicit_alone(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
     explicit_where(dae, equation, variable, |dae, solution| is_safe(dae, solution.divisor))
 }
 

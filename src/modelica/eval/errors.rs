@@ -4,7 +4,7 @@ use crate::codes;
 pub use crate::functions::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
 
 /// What to do about a variable of a function that is used before it is assigned.
-pub const ASSIGN_BEFORE: &str = "assign it before, or give it a value in its declaration";
+pub(crate) const ASSIGN_BEFORE: &str = "assign it before, or give it a value in its declaration";
 
 codes! {
     /// A name that stands for no variable.

@@ -30,7 +30,7 @@ pub enum Flow<C = Infallible> {
 
 /// What is known of the condition of a branch.
 #[derive(Debug, Clone, Copy)]
-pub enum Decision<C> {
+pub(crate) enum Decision<C> {
     /// Its value.
     Known(bool),
     /// It is decided later.
@@ -38,19 +38,19 @@ pub enum Decision<C> {
 }
 
 /// The branches of `if` or `when`: conditions with statements.
-pub type Branches = [(Expression, Vec<Statement>)];
+pub(crate) type Branches = [(Expression, Vec<Statement>)];
 
 /// The variables that the outputs of a call are assigned to, as far as they are.
-pub type Targets = [Option<ComponentReference>];
+pub(crate) type Targets = [Option<ComponentReference>];
 
 /// Why a statement after which the next one follows cannot be executed.
-pub type Executed = Result<(), Diagnostic>;
+pub(crate) type Executed = Result<(), Diagnostic>;
 
 /// How a statement ended, or why it cannot be executed.
-pub type Done<D> = Result<Flow<<D as Domain>::Condition>, Diagnostic>;
+pub(crate) type Done<D> = Result<Flow<<D as Domain>::Condition>, Diagnostic>;
 
 /// What statements are made into.
-pub trait Domain: Sized {
+pub(crate) trait Domain: Sized {
     /// A condition that is not known during the walk.
     type Condition: Copy;
 
@@ -92,7 +92,7 @@ pub trait Domain: Sized {
 }
 
 /// Executes statements in order, until one leads elsewhere.
-pub fn statements<D: Domain>(domain: &mut D, list: &[Statement]) -> Done<D> {
+pub(crate) fn statements<D: Domain>(domain: &mut D, list: &[Statement]) -> Done<D> {
     let mut flow = Flow::Next;
     for (at, statement) in list.iter().enumerate() {
         let done = go_on(domain, flow, |domain| domain.statement(statement));
@@ -118,7 +118,7 @@ fn go_on<D: Domain>(
 }
 
 /// Executes one statement.
-pub fn execute<D: Domain>(domain: &mut D, statement: &Statement) -> Done<D> {
+pub(crate) fn execute<D: Domain>(domain: &mut D, statement: &Statement) -> Done<D> {
     match &statement.kind {
         StatementKind::Assign { target, value } => {
             domain.assign_value(target, value, statement.span)?;
@@ -150,7 +150,7 @@ pub fn execute<D: Domain>(domain: &mut D, statement: &Statement) -> Done<D> {
 }
 
 /// Executes the first branch whose condition holds, or the statements otherwise.
-pub fn if_statement<D: Domain>(
+pub(crate) fn if_statement<D: Domain>(
     domain: &mut D,
     branches: &Branches,
     otherwise: &[Statement],
@@ -178,7 +178,7 @@ pub fn if_statement<D: Domain>(
 
 /// What a loop repeats: its statements, perhaps in loops over further indices.
 #[derive(Debug, Clone, Copy)]
-pub struct Iteration<'s> {
+pub(crate) struct Iteration<'s> {
     indices: &'s [ForIndex],
     /// The statements.
     pub statements: &'s [Statement],
@@ -188,7 +188,7 @@ pub struct Iteration<'s> {
 
 impl Iteration<'_> {
     /// Executes it once.
-    pub fn execute<D: Domain>(self, domain: &mut D) -> Done<D> {
+    pub(crate) fn execute<D: Domain>(self, domain: &mut D) -> Done<D> {
         match self.indices.split_first() {
             None => statements(domain, self.statements),
             Some((index, indices)) => domain.for_loop(index, Iteration { indices, ..self }),
@@ -196,7 +196,7 @@ impl Iteration<'_> {
     }
 
     /// Executes it as often as there is a next one, unless the loop is left.
-    pub fn repeat<D: Domain>(
+    pub(crate) fn repeat<D: Domain>(
         self,
         domain: &mut D,
         mut next: impl FnMut(&mut D) -> Result<bool, Diagnostic>,

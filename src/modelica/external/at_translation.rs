@@ -23,19 +23,19 @@ pub(crate) struct AtTranslation {
 
 impl AtTranslation {
     /// Nothing printed yet.
-    pub fn new(resources: Resources) -> AtTranslation {
+    pub(crate) fn new(resources: Resources) -> AtTranslation {
         AtTranslation { resources, ..AtTranslation::default() }
     }
 
     /// How often the state of the random numbers was used: a value that took some is not found again by
     /// the same expression.
-    pub fn draws(&self) -> u64 {
+    pub(crate) fn draws(&self) -> u64 {
         self.draws
     }
 
     /// The lines as notes. The value is a constant of the model, whose simulation does not call the
     /// function again.
-    pub fn notes(&self) -> Vec<Fault> {
+    pub(crate) fn notes(&self) -> Vec<Fault> {
         let line = |text: &String| fault!(PRINTED, "a function called at translation: {text}");
         let mut faults: Vec<Fault> = self.lines.iter().map(line).collect();
         if self.dropped > 0 {

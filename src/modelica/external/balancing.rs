@@ -26,13 +26,13 @@ pub(crate) struct Balanced {
 
 impl Balanced {
     /// Neither permuted nor scaled.
-    pub fn unchanged(matrix: DMatrix<f64>) -> Balanced {
+    pub(crate) fn unchanged(matrix: DMatrix<f64>) -> Balanced {
         let n = matrix.nrows();
         Balanced { matrix, active: 0..n, scale: vec![1.0; n] }
     }
 
     /// Permuted and scaled.
-    pub fn of(matrix: DMatrix<f64>) -> Balanced {
+    pub(crate) fn of(matrix: DMatrix<f64>) -> Balanced {
         let mut balanced = Balanced::unchanged(matrix);
         balanced.permute();
         balanced.scale();
@@ -65,7 +65,7 @@ impl Balanced {
     }
 
     /// Scales the active part.
-    pub fn scale(&mut self) {
+    pub(crate) fn scale(&mut self) {
         let (first, size) = (self.active.start, self.active.len());
         let block = self.matrix.view((first, first), (size, size));
         // Squares of its elements must not overflow.
@@ -82,7 +82,7 @@ impl Balanced {
     }
 
     /// Transforms right eigenvectors of the balanced matrix, as columns, to those of the matrix.
-    pub fn right(&self, vectors: &mut DMatrix<f64>) {
+    pub(crate) fn right(&self, vectors: &mut DMatrix<f64>) {
         for k in self.active.clone() {
             vectors.row_mut(k).scale_mut(self.scale[k]);
         }
@@ -90,7 +90,7 @@ impl Balanced {
     }
 
     /// Transforms left eigenvectors of the balanced matrix, as columns, to those of the matrix.
-    pub fn left(&self, vectors: &mut DMatrix<f64>) {
+    pub(crate) fn left(&self, vectors: &mut DMatrix<f64>) {
         for k in self.active.clone() {
             vectors.row_mut(k).unscale_mut(self.scale[k]);
         }

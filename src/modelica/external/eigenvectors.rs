@@ -99,7 +99,7 @@ fn apart(value: C, element: f64, least: f64) -> C {
 
 /// How columns that hold eigenvectors are scaled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
+pub(crate) enum Scale {
     /// Euclidean norm 1; the largest component of a complex one is real.
     Norm,
     /// The largest component has 1 as sum of the sizes of its parts.
@@ -107,7 +107,7 @@ pub enum Scale {
 }
 
 /// Scales columns that hold eigenvectors, complex ones where eigenvalues are.
-pub fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, scale: Scale) {
+pub(crate) fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, scale: Scale) {
     let mut at = 0;
     while at < vectors.ncols() {
         let size = if is_complex(at) && at + 1 < vectors.ncols() { 2 } else { 1 };

@@ -10,7 +10,7 @@ const LARGE: usize = 1 << 12;
 
 /// A vector or matrix argument; a vector is a column. Its orthogonal factors are square matrices with
 /// as many rows as it has rows or columns: one without elements may have billions.
-pub fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+pub(crate) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
     let (rows, columns) = match *call.dims(argument) {
         [rows] => (rows as usize, 1),
         [rows, columns] => (rows as usize, columns as usize),
@@ -29,7 +29,7 @@ pub fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
 }
 
 /// A square matrix argument.
-pub fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+pub(crate) fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
     let matrix = matrix(call, argument)?;
     match matrix.is_square() {
         true => Ok(matrix),
@@ -38,7 +38,7 @@ pub fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
 }
 
 /// Writes the upper left part that fits.
-pub fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
+pub(crate) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
     let columns = call.dims(argument).get(1).map_or(1, |columns| *columns as usize);
     for (at, element) in call.array_mut(argument).iter_mut().enumerate() {
         let (row, column) = (at / columns, at % columns);
@@ -56,22 +56,22 @@ pub(crate) fn power_of_two(size: f64) -> f64 {
 }
 
 /// A matrix of one column.
-pub fn column(values: &[f64]) -> DMatrix<f64> {
+pub(crate) fn column(values: &[f64]) -> DMatrix<f64> {
     DMatrix::from_column_slice(values.len(), 1, values)
 }
 
 /// Whether a job is asked for: its letter is not `N`.
-pub fn is_requested(call: &Call<'_>, argument: usize) -> bool {
+pub(crate) fn is_requested(call: &Call<'_>, argument: usize) -> bool {
     !call.text(argument).eq_ignore_ascii_case("N")
 }
 
 /// Whether the letter for op(A) is not `N`.
-pub fn is_transposed(call: &Call<'_>, argument: usize) -> bool {
+pub(crate) fn is_transposed(call: &Call<'_>, argument: usize) -> bool {
     is_requested(call, argument)
 }
 
 /// The norm that a letter names: greatest element, columns, rows, Frobenius.
-pub fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
+pub(crate) fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
     let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
     Ok(match letter.to_ascii_uppercase().as_str() {

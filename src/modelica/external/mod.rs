@@ -97,14 +97,19 @@ pub(crate) mod by_name {
     use super::{Entry, FAMILIES};
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
 
-    pub fn serialize<S: Serializer>(entry: &&'static Entry, target: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        entry: &&'static Entry,
+        target: S,
+    ) -> Result<S::Ok, S::Error> {
         if entry.c.is_some() {
             return Err(ser::Error::custom("a function in C"));
         }
         (entry.name, entry.stands_for).serialize(target)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<&'static Entry, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        source: D,
+    ) -> Result<&'static Entry, D::Error> {
         let (name, stands_for) = <(String, String)>::deserialize(source)?;
         let own = [&super::COMPOSE, &super::FAIL, &super::PRINT];
         let mut entries = FAMILIES.iter().copied().flatten().chain(own);
@@ -120,7 +125,7 @@ pub(crate) mod none {
     use serde::{Deserializer, Serializer, ser};
     use std::sync::Arc;
 
-    pub fn serialize<S: Serializer>(
+    pub(crate) fn serialize<S: Serializer>(
         function: &Option<Arc<dyn Callable>>,
         target: S,
     ) -> Result<S::Ok, S::Error> {
@@ -130,7 +135,7 @@ pub(crate) mod none {
         }
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         source: D,
     ) -> Result<Option<Arc<dyn Callable>>, D::Error> {
         serde::Deserialize::deserialize(source).map(|()| None)

@@ -19,7 +19,7 @@ pub(crate) static COMPOSE: Entry =
 pub(crate) static FAIL: Entry = Entry { stands_for: OWN, ..Entry::pure("assert", "t*", fail) };
 
 /// As `ModelicaInternal_print`: the file, then the text in parts.
-pub static PRINT: Entry =
+pub(crate) static PRINT: Entry =
     Entry { stands_for: OWN, ..Entry::writing("ModelicaInternal_print", "t*", print) };
 
 /// The end of a signature: parts follow.

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-pub fn block(t: &DMatrix<f64>, k: usize) -> [[f64; 2]; 2] {
+pub(crate) fn block(t: &DMatrix<f64>, k: usize) -> [[f64; 2]; 2] {
     [[t[(k, k)], t[(k, k + 1)]], [t[(k + 1, k)], t[(k + 1, k + 1)]]]
 }
 

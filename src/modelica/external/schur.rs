@@ -10,7 +10,7 @@ use crate::elementary;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Absolute value of a complex number.
-pub fn modulus(z: Complex<f64>) -> f64 {
+pub(crate) fn modulus(z: Complex<f64>) -> f64 {
     elementary::hypot(z.re, z.im)
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct RealSchur {
 
 impl RealSchur {
     /// The form of a square matrix; `None` if it was not found.
-    pub fn of(a: &DMatrix<f64>) -> Option<RealSchur> {
+    pub(crate) fn of(a: &DMatrix<f64>) -> Option<RealSchur> {
         if a.nrows() < 2 {
             return Some(RealSchur { q: DMatrix::identity(a.nrows(), a.nrows()), t: a.clone() });
         }
@@ -163,7 +163,7 @@ impl RealSchur {
 
     /// The eigenvalues in the order of the diagonal; of a pair, the one with positive imaginary
     /// part first.
-    pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
+    pub(crate) fn eigenvalues(&self) -> Vec<Complex<f64>> {
         let mut values = Vec::with_capacity(self.t.nrows());
         while values.len() < self.t.nrows() {
             let at = values.len();

@@ -6,7 +6,12 @@ use nalgebra::{DMatrix, DVector};
 /// X with A X + sign X B = C, for upper quasi-triangular A and B ([Golub &
 /// Van Loan 2013](gapilib_base::bibliography#golub-van-loan-2013), §7.6.3). Where the equation has no unique
 /// solution, the nearest that has one is solved.
-pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, sign: f64) -> DMatrix<f64> {
+pub(crate) fn sylvester(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    c: &DMatrix<f64>,
+    sign: f64,
+) -> DMatrix<f64> {
     let (rows, columns) = (starts(a), starts(b));
     let mut x = DMatrix::zeros(a.nrows(), b.nrows());
     for &(column, n) in &columns {

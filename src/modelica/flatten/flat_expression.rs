@@ -43,7 +43,7 @@ fn next_part(path: &str) -> (&str, &str) {
 }
 
 /// A value written as an expression.
-pub fn literal(value: &Value, span: Span) -> Expression {
+pub(crate) fn literal(value: &Value, span: Span) -> Expression {
     let kind = match value {
         Value::Real(number) => ExpressionKind::Real(*number),
         Value::Integer(number) => ExpressionKind::Integer(*number),
@@ -100,7 +100,7 @@ fn array_literal(dims: &[usize], offset: usize, array: &ArrayValue, span: Span) 
 }
 
 /// `base[subscripts]`, written shortly where the base allows it.
-pub fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
+pub(crate) fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
     if subscripts.is_empty() {
         return base;
     }
@@ -161,7 +161,7 @@ pub(crate) fn picked(value: Expression, indices: &[usize]) -> Expression {
 }
 
 /// A call with positional arguments.
-pub fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
+pub(crate) fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
     let function = ComponentReference::from_name(name, span);
     let arguments = Box::new(Arguments { positional, ..Arguments::default() });
     Expression::new(ExpressionKind::Call { function, arguments }, span)

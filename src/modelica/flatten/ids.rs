@@ -6,7 +6,7 @@ pub(crate) struct ScopeId(pub u32);
 
 impl ScopeId {
     /// The scope of the whole library, in which the top-level classes stand.
-    pub const TOP: ScopeId = ScopeId(0);
+    pub(crate) const TOP: ScopeId = ScopeId(0);
 }
 
 /// A node of the instance tree.

@@ -26,7 +26,7 @@ struct Shared {
 
 impl RecordValues {
     /// What is resolved already.
-    pub fn get(
+    pub(crate) fn get(
         &self,
         given: &Arc<Expression>,
         context: ScopeId,
@@ -37,7 +37,7 @@ impl RecordValues {
     }
 
     /// Keeps what something resolves to.
-    pub fn insert(
+    pub(crate) fn insert(
         &mut self,
         given: &Arc<Expression>,
         context: ScopeId,
@@ -70,7 +70,7 @@ fn record_of(component: &Expression) -> Option<&Arc<Expression>> {
 }
 
 /// Whether a value is the result of a call, or a component of one.
-pub fn is_computed(value: &Expression) -> bool {
+pub(crate) fn is_computed(value: &Expression) -> bool {
     match &value.kind {
         ExpressionKind::Call { .. } => true,
         ExpressionKind::Field { base, .. } => is_computed(base),

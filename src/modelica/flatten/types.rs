@@ -19,14 +19,14 @@ use std::sync::Arc;
 
 /// What the types of resolved expressions follow from: the variables and the functions that they
 /// name.
-pub struct Types<'t> {
+pub(crate) struct Types<'t> {
     pub tree: &'t Tree,
     pub functions: &'t FunctionTable,
 }
 
 impl Types<'_> {
     /// Refuses a value whose type or dimensions cannot be those of the variable.
-    pub fn check_value(
+    pub(crate) fn check_value(
         &self,
         e: &Expression,
         variable: &Variable,
@@ -118,7 +118,7 @@ impl Types<'_> {
     }
 
     /// The element type of an expression; `None` where its text does not show it.
-    pub fn type_of(&self, e: &Expression) -> Option<BaseType> {
+    pub(crate) fn type_of(&self, e: &Expression) -> Option<BaseType> {
         inference::type_of(&mut &*self, e)
     }
 
@@ -224,7 +224,7 @@ pub(crate) fn has_only_literals(e: &Expression) -> bool {
 }
 
 /// The name of a type, for messages.
-pub fn type_name(base: &BaseType) -> String {
+pub(crate) fn type_name(base: &BaseType) -> String {
     match base {
         BaseType::Real => "Real".into(),
         BaseType::Integer => "Integer".into(),

@@ -136,7 +136,7 @@ pub(crate) enum Transport {
 
 impl Transport {
     /// The variables that hold its values, and what these are at the start.
-    pub fn outputs(&self) -> Vec<(VarId, Expr)> {
+    pub(crate) fn outputs(&self) -> Vec<(VarId, Expr)> {
         match self {
             Transport::Delay { variable, argument, .. } => vec![(*variable, *argument)],
             Transport::Pipe { outputs, values, .. } => {
@@ -147,7 +147,7 @@ impl Transport {
     }
 
     /// Where it is written.
-    pub fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         match self {
             Transport::Delay { span, .. } | Transport::Pipe { span, .. } => *span,
         }

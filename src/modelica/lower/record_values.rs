@@ -9,10 +9,7 @@ use crate::syntax::ast::{Expression, ExpressionKind};
 
 impl Builder<'_> {
     /// The value of a binding, which is in the flat model.
-    pub(super) fn binding_value(
-        &mut self,
-        binding: &Expression,
-    ) -> Result<Lowered<Expr>, Diagnostic> {
+    fn binding_value(&mut self, binding: &Expression) -> Result<Lowered<Expr>, Diagnostic> {
         let (base, name) = match &binding.kind {
             ExpressionKind::Field { base, name } => (&**base, *name),
             _ => return Lowering::new(self).lower(binding),

@@ -89,7 +89,7 @@ impl Builder<'_> {
     }
 
     /// The same for conditions that are expressions already.
-    pub(super) fn activation_of(
+    fn activation_of(
         &mut self,
         conditions: &[(Array<Expr>, Span)],
         at_start: bool,
@@ -111,7 +111,7 @@ impl Builder<'_> {
     }
 
     /// `v = if guard₁ then value₁ … else pre(v)`
-    pub(super) fn assign_at_events(
+    fn assign_at_events(
         &mut self,
         variable: VarId,
         values: &[Guarded],

@@ -255,12 +255,12 @@ pub(crate) struct VariableCollection<'a> {
 
 impl<'a> VariableCollection<'a> {
     /// Of no expression yet.
-    pub fn new(pool: &'a Pool) -> VariableCollection<'a> {
+    pub(crate) fn new(pool: &'a Pool) -> VariableCollection<'a> {
         VariableCollection { pool, seen: vec![false; pool.len()], open: Vec::new() }
     }
 
     /// Tells the variables of an expression that it did not tell before.
-    pub fn add(&mut self, expr: Expr, mut found: impl FnMut(VarId)) {
+    pub(crate) fn add(&mut self, expr: Expr, mut found: impl FnMut(VarId)) {
         self.open.push(expr);
         while let Some(expr) = self.open.pop() {
             if std::mem::replace(&mut self.seen[expr.index()], true) {
@@ -287,12 +287,12 @@ pub(crate) struct Containing<F> {
 
 impl<F: Fn(&Pool, Expr) -> bool> Containing<F> {
     /// `is_sought` says the same of a node at any time.
-    pub fn new(is_sought: F) -> Containing<F> {
+    pub(crate) fn new(is_sought: F) -> Containing<F> {
         Containing { is_sought, marks: Vec::new() }
     }
 
     /// Whether an expression is such a leaf, or made of one.
-    pub fn contains(&mut self, pool: &Pool, expr: Expr) -> bool {
+    pub(crate) fn contains(&mut self, pool: &Pool, expr: Expr) -> bool {
         for index in self.marks.len()..=expr.index() {
             let node = Expr(index as u32);
             let mut found = (self.is_sought)(pool, node);

@@ -22,12 +22,12 @@ pub(crate) struct Substitution<'a> {
 
 impl<'a> Substitution<'a> {
     /// `replacement` gives `None` for variables that stay.
-    pub fn new(replacement: &'a dyn Fn(VarId) -> Option<Expr>) -> Substitution<'a> {
+    pub(crate) fn new(replacement: &'a dyn Fn(VarId) -> Option<Expr>) -> Substitution<'a> {
         Substitution { replacement, successors: FxHashMap::default() }
     }
 
     /// The expression with its variables replaced.
-    pub fn apply(&mut self, pool: &mut Pool, expr: Expr) -> Expr {
+    pub(crate) fn apply(&mut self, pool: &mut Pool, expr: Expr) -> Expr {
         let successors = &mut self.successors;
         for old in pool.reachable_unless(&[expr], |known| successors.contains_key(&known)) {
             let node = pool.node(old).clone();

@@ -148,7 +148,7 @@ fn is_available(bytes: usize) -> bool {
 }
 
 /// A fault if there is no memory for so many elements.
-pub fn has_room(count: usize, dims: &[usize]) -> Result<(), Fault> {
+pub(crate) fn has_room(count: usize, dims: &[usize]) -> Result<(), Fault> {
     // The largest elements, strings, take two words.
     match is_available(count.saturating_mul(16)) {
         true => Ok(()),

@@ -130,7 +130,7 @@ impl Elements {
 
 /// `new` as a replacement of `old`: an Integer becomes Real where `old` is Real, and the literal of
 /// that number where `old` is of an enumeration; a different type or different sizes are a fault.
-pub fn like(old: &Value, new: Value) -> Result<Value, Fault> {
+pub(crate) fn like(old: &Value, new: Value) -> Result<Value, Fault> {
     let converted = match (old, &new) {
         (Value::Real(_), Value::Integer(_)) => new.promoted(),
         (Value::Enumeration(old), Value::Integer(ordinal)) => match old.of_number(*ordinal) {

@@ -78,7 +78,7 @@ pub fn split(dims: &[usize], value: Value) -> Result<Vec<Value>, Fault> {
 }
 
 /// A value that is not one for every record of an array.
-pub(super) fn wrong_share(dims: &[usize], value: &Value) -> Fault {
+fn wrong_share(dims: &[usize], value: &Value) -> Fault {
     fault!(
         SIZE_MISMATCH,
         "cannot distribute a value of type {} over records with the sizes {}",

@@ -13,7 +13,7 @@ const LOCAL: &[u8] = b"PK\x03\x04";
 const HEADER: usize = 30;
 
 /// The bytes that all entries have when they are inflated; `None` if they have more than `limit`.
-pub fn inflated(bytes: &[u8], limit: u64) -> Option<u64> {
+pub(crate) fn inflated(bytes: &[u8], limit: u64) -> Option<u64> {
     let mut total = 0;
     for entry in entries(bytes) {
         let mut counted = Counted(0);
@@ -28,7 +28,7 @@ pub fn inflated(bytes: &[u8], limit: u64) -> Option<u64> {
 }
 
 /// What follows each local header, inflated while it is read.
-pub fn entries(bytes: &[u8]) -> impl Iterator<Item = DeflateDecoder<&[u8]>> {
+pub(crate) fn entries(bytes: &[u8]) -> impl Iterator<Item = DeflateDecoder<&[u8]>> {
     let mut rest = bytes;
     std::iter::from_fn(move || {
         let at = rest.windows(LOCAL.len()).position(|window| window == LOCAL)?;

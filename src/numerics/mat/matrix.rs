@@ -155,7 +155,7 @@ impl Matrix {
 /// Number of values of a matrix that a file claims to hold. An empty matrix with a huge number of
 /// rows or columns is refused: it takes no space in a file, but much time in every loop over its
 /// rows.
-pub fn size(name: &str, rows: usize, columns: usize) -> Result<usize, Fault> {
+pub(crate) fn size(name: &str, rows: usize, columns: usize) -> Result<usize, Fault> {
     const MAX_EMPTY: usize = 1 << 16;
     match rows.checked_mul(columns) {
         Some(size) if size > 0 || rows.max(columns) <= MAX_EMPTY => Ok(size),

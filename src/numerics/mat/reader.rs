@@ -7,22 +7,22 @@ use crate::fault;
 
 /// The bytes that remain of a file or of a part of it.
 #[derive(Debug, Clone, Copy)]
-pub struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     rest: &'a [u8],
     pub(super) order: ByteOrder,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(bytes: &'a [u8], order: ByteOrder) -> Reader<'a> {
+    pub(crate) fn new(bytes: &'a [u8], order: ByteOrder) -> Reader<'a> {
         Reader { rest: bytes, order }
     }
 
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }
 
     /// The next `count` bytes; `what` names them in the message.
-    pub fn take(&mut self, count: usize, what: &str) -> Result<&'a [u8], Fault> {
+    pub(crate) fn take(&mut self, count: usize, what: &str) -> Result<&'a [u8], Fault> {
         let Some((taken, rest)) = self.rest.split_at_checked(count) else {
             let rest = self.rest.len();
             return Err(fault!(
@@ -35,11 +35,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Passes over up to `count` bytes, as padding at the end of a file may be missing.
-    pub fn pad(&mut self, count: usize) {
+    pub(crate) fn pad(&mut self, count: usize) {
         self.rest = &self.rest[count.min(self.rest.len())..];
     }
 
-    pub fn u32(&mut self, what: &str) -> Result<u32, Fault> {
+    pub(crate) fn u32(&mut self, what: &str) -> Result<u32, Fault> {
         let bytes = self.take(4, what)?;
         Ok(self.order.u32([bytes[0], bytes[1], bytes[2], bytes[3]]))
     }

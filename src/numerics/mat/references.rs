@@ -16,7 +16,7 @@ const SHEET: &[u8] = b"sheetData";
 const SHOWN: usize = 40;
 
 /// The first reference of a cell or row outside of all spreadsheets, if the archive has one.
-pub fn impossible(bytes: &[u8]) -> Option<String> {
+pub(crate) fn impossible(bytes: &[u8]) -> Option<String> {
     // Entries that are not compressed are found in the file itself.
     in_sheet(bytes).or_else(|| archive::entries(bytes).find_map(in_sheet))
 }

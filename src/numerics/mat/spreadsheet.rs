@@ -23,7 +23,7 @@ const DAYS_TO_1970: f64 = 25_569.0;
 /// # Errors
 ///
 /// `bad-table`; faults name the cell.
-pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub(crate) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let unreadable = |error: &dyn std::fmt::Display| {
         fault!(BAD_TABLE, "the spreadsheet cannot be read: {error}")
             .help("save it as .xlsx or .csv")

@@ -12,12 +12,12 @@ use crate::{bail, fault};
 const MAX_CHARACTERS: usize = 1 << 26;
 
 /// Whether the first line is `#1`.
-pub fn looks_like(bytes: &[u8]) -> bool {
+pub(crate) fn looks_like(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     matches!(bytes, [b'#', b'1'] | [b'#', b'1', b' ' | b'\t' | b'\r' | b'\n', ..])
 }
 
-pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub(crate) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let text = super::table::decode(bytes);
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
     let mut file = MatFile::new(Version::Text);

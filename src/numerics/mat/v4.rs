@@ -28,7 +28,7 @@ struct Header {
     name_length: usize,
 }
 
-pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub(crate) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     if bytes.is_empty() {
         bail!(BAD_MAT_FILE, "the file is empty");
     }

@@ -36,7 +36,7 @@ pub(crate) fn byte_order(bytes: &[u8]) -> Option<ByteOrder> {
     }
 }
 
-pub fn read(bytes: &[u8], order: ByteOrder) -> Result<MatFile, Fault> {
+pub(crate) fn read(bytes: &[u8], order: ByteOrder) -> Result<MatFile, Fault> {
     let mut file = File { found: MatFile::new(Version::V5), inflatable: MAX_INFLATED };
     let mut reader = Reader::new(&bytes[HEADER..], order);
     while !reader.is_empty() {

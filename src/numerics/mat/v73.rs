@@ -19,7 +19,7 @@ const MAX_DEPTH: usize = 32;
 /// Datasets and groups of one file.
 const MAX_OBJECTS: usize = 100_000;
 
-pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub(crate) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let file = File::from_bytes(bytes.to_vec()).map_err(|error| damaged("the file", &error))?;
     let mut reader = Reader {
         found: MatFile::new(Version::V73),

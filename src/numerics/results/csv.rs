@@ -9,7 +9,7 @@ use crate::{bail, mat};
 use std::fmt::Write;
 use std::io;
 
-pub const ENTRY: Entry<dyn Format> = Entry {
+pub(crate) const ENTRY: Entry<dyn Format> = Entry {
     name: "csv",
     aliases: &[],
     summary: "text with a header line and one line per time point",

@@ -19,7 +19,7 @@ use crate::mat::{self, MatFile, Matrix, Storage};
 use crate::registry::Entry;
 use std::collections::HashMap;
 
-pub const ENTRY: Entry<dyn Format> = Entry {
+pub(crate) const ENTRY: Entry<dyn Format> = Entry {
     name: "mat",
     aliases: &["dymola"],
     summary: "MAT version 4 in the layout of Dymola and OpenModelica",

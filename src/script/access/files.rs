@@ -179,7 +179,7 @@ impl Session {
     /// The same for what a simulation had computed when it failed: for people and other programs, while
     /// the script that expected all of it gets an error when it reads it. What says why it failed then says
     /// where this is.
-    pub fn write_unfinished(
+    pub(crate) fn write_unfinished(
         &mut self,
         path: &Path,
         table: &ResultTable,

@@ -17,17 +17,17 @@ pub(crate) struct Outdated {
 
 impl Outdated {
     /// Why a file is older than a script believes, if it is.
-    pub fn reason(&self, file: &Path) -> Option<&str> {
+    pub(crate) fn reason(&self, file: &Path) -> Option<&str> {
         self.files.get(file).map(String::as_str)
     }
 
     /// Whether a file holds what a simulation had computed when it failed.
-    pub fn is_unfinished(&self, file: &Path) -> bool {
+    pub(crate) fn is_unfinished(&self, file: &Path) -> bool {
         self.unfinished.contains(file)
     }
 
     /// A command is going to write this file.
-    pub fn expect(&mut self, file: PathBuf) {
+    pub(crate) fn expect(&mut self, file: PathBuf) {
         self.expected.insert(file);
     }
 
@@ -50,7 +50,7 @@ impl Outdated {
     }
 
     /// The command that was going to write this file has ended: whether it has not written it.
-    pub fn end(&mut self, file: &Path, reason: &str) -> bool {
+    pub(crate) fn end(&mut self, file: &Path, reason: &str) -> bool {
         let is_missing = self.expected.remove(file);
         if is_missing {
             self.files.entry(file.to_path_buf()).or_insert_with(|| reason.to_owned());

@@ -68,7 +68,7 @@ pub(crate) struct Process {
 
 impl Process {
     /// Lets an environment variable be read.
-    pub fn allow(&mut self, name: &str) {
+    pub(crate) fn allow(&mut self, name: &str) {
         self.allowed.insert(name.to_owned());
     }
 
@@ -79,7 +79,7 @@ impl Process {
     }
 
     /// Sets an environment variable, for the scripts and for the programs that they start.
-    pub fn set(&mut self, name: String, content: String) {
+    pub(crate) fn set(&mut self, name: String, content: String) {
         self.variables.insert(name, content);
     }
 
@@ -87,7 +87,7 @@ impl Process {
     ///
     /// # Errors
     /// The variable is set and may hold a secret.
-    pub fn variable(
+    pub(crate) fn variable(
         &self,
         of_system: impl Fn(&str) -> Option<String>,
         permissions: Permissions,
@@ -113,7 +113,7 @@ impl Process {
     ///
     /// # Errors
     /// It may not be started, or cannot be.
-    pub fn run(
+    pub(crate) fn run(
         &self,
         world: &mut dyn Environment,
         permissions: Permissions,

@@ -9,7 +9,7 @@ pub(crate) struct Extensions(HashMap<TypeId, Box<dyn Any>>);
 
 impl Extensions {
     /// The value of this type.
-    pub fn get<T: Default + 'static>(&mut self) -> &mut T {
+    pub(crate) fn get<T: Default + 'static>(&mut self) -> &mut T {
         let boxed = self.0.entry(TypeId::of::<T>()).or_insert_with(|| Box::<T>::default());
         match boxed.downcast_mut() {
             Some(data) => data,

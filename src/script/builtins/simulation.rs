@@ -299,7 +299,7 @@ fn run(
 }
 
 /// Simulates a model and writes the result file.
-pub(super) fn run_model(
+fn run_model(
     session: &mut Session,
     model: &Translated,
     options: &SimulationOptions,

@@ -19,25 +19,25 @@ pub(crate) struct FollowUps {
 
 impl FollowUps {
     /// Whether `name` would exist had an earlier statement not failed.
-    pub fn is_missing(&self, name: Ident) -> bool {
+    pub(crate) fn is_missing(&self, name: Ident) -> bool {
         self.anything || self.missing.contains(&name)
     }
 
     /// A statement gave the variable a value after all.
-    pub fn found(&mut self, name: Ident) {
+    pub(crate) fn found(&mut self, name: Ident) {
         if !self.missing.is_empty() {
             self.missing.remove(&name);
         }
     }
 
     /// Whether this is the first follow-up, the only one that is reported.
-    pub fn is_first(&mut self) -> bool {
+    pub(crate) fn is_first(&mut self) -> bool {
         !std::mem::replace(&mut self.reported, true)
     }
 
     /// The statement was executed, but not to its end: the scripts that it runs noted themselves
     /// what they did not do.
-    pub fn failed(&mut self, statement: &InteractiveStatement) {
+    pub(crate) fn failed(&mut self, statement: &InteractiveStatement) {
         let anything = self.anything;
         self.not_done(std::slice::from_ref(statement));
         self.anything = anything;

@@ -27,7 +27,7 @@ enum Sign {
 const MAX_SIGNS: usize = 64;
 
 /// A script that was read.
-pub struct Parsed {
+pub(crate) struct Parsed {
     /// Its statements.
     pub parts: ScriptParts,
     signs: Vec<Sign>,
@@ -36,13 +36,13 @@ pub struct Parsed {
 impl Parsed {
     /// # Errors
     /// What is wrong with the text.
-    pub fn read(source: SourceId, text: &str) -> Result<Parsed, Diagnostic> {
+    pub(crate) fn read(source: SourceId, text: &str) -> Result<Parsed, Diagnostic> {
         let (parts, signs) = ScriptParts::read(source, text, signs_of)?;
         Ok(Parsed { parts, signs })
     }
 
     /// The dialect that the script itself shows: that of the first call that only one of them has.
-    pub fn dialect(&self) -> Option<Dialect> {
+    pub(crate) fn dialect(&self) -> Option<Dialect> {
         self.signs.iter().find_map(|sign| match sign {
             Sign::Of(dialect) => Some(*dialect),
             Sign::Runs(_) => None,
@@ -65,7 +65,7 @@ impl Parsed {
 }
 
 /// The folder of the calling script, the working directory, and the name that was called.
-pub type Call = (PathBuf, PathBuf, String);
+pub(crate) type Call = (PathBuf, PathBuf, String);
 
 /// Scripts read before, by path, each valid as long as the file's stamp stays; and the paths that
 /// names led to.
@@ -77,18 +77,18 @@ pub(crate) struct ParsedScripts {
 
 impl ParsedScripts {
     /// The script at a path whose file has this stamp, if it was read.
-    pub fn get(&self, path: &Path, stamp: Option<Stamp>) -> Option<Arc<Parsed>> {
+    pub(crate) fn get(&self, path: &Path, stamp: Option<Stamp>) -> Option<Arc<Parsed>> {
         let (known, script) = self.by_path.get(path)?;
         (*known == stamp && stamp.is_some()).then(|| script.clone())
     }
 
     /// Keeps a script for the next call.
-    pub fn keep(&mut self, path: &Path, stamp: Option<Stamp>, script: &Arc<Parsed>) {
+    pub(crate) fn keep(&mut self, path: &Path, stamp: Option<Stamp>, script: &Arc<Parsed>) {
         self.by_path.insert(path.to_path_buf(), (stamp, script.clone()));
     }
 
     /// Where a call led to before.
-    pub fn found(&self, call: &Call) -> Option<&PathBuf> {
+    pub(crate) fn found(&self, call: &Call) -> Option<&PathBuf> {
         self.found.get(call)
     }
 

@@ -34,21 +34,21 @@ struct Frame {
 
 impl Statuses {
     /// A value is evaluated that is going to be assigned or tested.
-    pub fn begin_use(&mut self, value: &Expression) {
+    pub(crate) fn begin_use(&mut self, value: &Expression) {
         self.own.answers.clear();
         self.own.named.clear();
         self.own.name(value);
     }
 
     /// A command answered, with these messages on the way.
-    pub fn answered(&mut self, answer: &Value, messages: Numbers) {
+    pub(crate) fn answered(&mut self, answer: &Value, messages: Numbers) {
         if is_negative(answer) && !messages.is_empty() {
             self.own.answers.push(messages);
         }
     }
 
     /// An iterator takes the values of a range.
-    pub fn iterates(&mut self, iterator: Ident, range: &Expression) {
+    pub(crate) fn iterates(&mut self, iterator: Ident, range: &Expression) {
         let own = &mut self.own;
         if own.of_variables.is_empty() && own.of_iterators.is_empty() {
             return;
@@ -60,7 +60,7 @@ impl Statuses {
     }
 
     /// A variable is given the value that was evaluated.
-    pub fn keep(&mut self, target: &ComponentReference, value: &Value) {
+    pub(crate) fn keep(&mut self, target: &ComponentReference, value: &Value) {
         let name = target.parts[0].name;
         if target.as_ident().is_some() {
             self.own.of_variables.remove(&name);
@@ -72,17 +72,17 @@ impl Statuses {
     }
 
     /// The messages that belong to the value that was evaluated.
-    pub fn used(&self) -> Vec<Numbers> {
+    pub(crate) fn used(&self) -> Vec<Numbers> {
         self.own.named.iter().chain(&self.own.answers).cloned().collect()
     }
 
     /// A function begins, which has variables of its own.
-    pub fn begin_function(&mut self) {
+    pub(crate) fn begin_function(&mut self) {
         self.callers.push(std::mem::take(&mut self.own));
     }
 
     /// The function has ended: the statuses that its outputs hold are those of the call.
-    pub fn end_function(&mut self, outputs: impl Iterator<Item = Ident>) {
+    pub(crate) fn end_function(&mut self, outputs: impl Iterator<Item = Ident>) {
         let caller = self.callers.pop().unwrap_or_default();
         let inner = std::mem::replace(&mut self.own, caller);
         let returned = outputs.filter_map(|output| inner.of_variables.get(&output));

@@ -6,7 +6,7 @@ use crate::syntax::parse_script;
 
 /// The text of a script in which the first assignment at the top level to `name` assigns `value`
 /// instead; `None` where there is no such assignment, or the text is not a script.
-pub fn assigned(text: &str, name: &str, value: &str) -> Option<String> {
+pub(crate) fn assigned(text: &str, name: &str, value: &str) -> Option<String> {
     let script = parse_script(SourceId::NONE, text).ok()?;
     let (start, end) = first_value(&script, name)?;
     Some(format!("{}{value}{}", text.get(..start)?, text.get(end..)?))

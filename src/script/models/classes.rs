@@ -277,7 +277,7 @@ impl Classes {
     }
 
     /// The same in a script, which can load it.
-    pub fn class_to_load(&self, name: &Name) -> Fault {
+    pub(crate) fn class_to_load(&self, name: &Name) -> Fault {
         self.unknown_class(name).help(
             "load the file that defines it first, with `openModel` or `loadFile`, or give its \
              folder with `--library`",

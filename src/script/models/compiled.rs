@@ -55,7 +55,7 @@ pub(crate) struct Current {
 
 impl Current {
     /// The model with the values that it has itself.
-    pub fn of(model: Arc<Translated>) -> Current {
+    pub(crate) fn of(model: Arc<Translated>) -> Current {
         let (overrides, imported) = (IndexMap::new(), IndexMap::new());
         Current { model, overrides, changes: Changes::default(), imported, unset: BTreeSet::new() }
     }
@@ -91,17 +91,17 @@ fn shown(model: &Translated, name: &str, value: f64) -> String {
 
 impl CompiledModels {
     /// A model, and what it depends on.
-    pub fn get(&self, problem: &str) -> Option<&(Uses, Arc<Translated>)> {
+    pub(crate) fn get(&self, problem: &str) -> Option<&(Uses, Arc<Translated>)> {
         self.known.get(problem)
     }
 
     /// Keeps a model that depends on these classes.
-    pub fn keep(&mut self, uses: Uses, model: &Arc<Translated>) {
+    pub(crate) fn keep(&mut self, uses: Uses, model: &Arc<Translated>) {
         self.known.insert(model.problem.clone(), (uses, model.clone()));
     }
 
     /// Forgets all models.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.known.clear();
         self.reported.clear();
         self.left.clear();
@@ -109,7 +109,7 @@ impl CompiledModels {
     }
 
     /// The model translated last.
-    pub fn last(&self) -> Option<&Arc<Translated>> {
+    pub(crate) fn last(&self) -> Option<&Arc<Translated>> {
         self.current.as_ref().map(|current| &current.model)
     }
 
@@ -138,7 +138,7 @@ impl CompiledModels {
     }
 
     /// Another model takes the place of the current one.
-    pub fn leave(&mut self, before: &Current) {
+    pub(crate) fn leave(&mut self, before: &Current) {
         let values = before.set_by_hand();
         if !values.is_empty() {
             self.left.insert(before.model.problem.clone(), values);
@@ -156,7 +156,7 @@ impl CompiledModels {
     }
 
     /// Whether a variable is the scripts' own, whatever parameter has the same name.
-    pub fn is_own(&self, name: Ident) -> bool {
+    pub(crate) fn is_own(&self, name: Ident) -> bool {
         self.own.contains(&name)
     }
 

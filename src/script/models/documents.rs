@@ -138,7 +138,7 @@ impl Session {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn load_path_once(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
+    pub(crate) fn load_path_once(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
         if !self.has_loaded(path) {
             self.load_path(path)?;
         }

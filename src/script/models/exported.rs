@@ -73,7 +73,10 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<(), Vec<Diagnos
 
 /// Does something without warnings of inputs that have no data: they are given values later, or
 /// deviations.
-pub fn with_inputs_to_come<T>(session: &mut Session, act: impl FnOnce(&mut Session) -> T) -> T {
+pub(crate) fn with_inputs_to_come<T>(
+    session: &mut Session,
+    act: impl FnOnce(&mut Session) -> T,
+) -> T {
     let before = std::mem::replace(&mut session.models.inputs_come_later, true);
     let done = act(session);
     session.models.inputs_come_later = before;

@@ -535,7 +535,7 @@ fn result_table(
 }
 
 /// Notes what a unit has said, each message once.
-pub fn note_messages(session: &mut Session, unit: &Imported) {
+pub(crate) fn note_messages(session: &mut Session, unit: &Imported) {
     for LogMessage { category, text, is_last_of_many, .. } in unit.pool.take_messages() {
         let category = if category.is_empty() { "message" } else { category.as_str() };
         let more = match is_last_of_many {

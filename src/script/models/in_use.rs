@@ -26,7 +26,7 @@ pub(crate) struct InUse {
 
 impl InUse {
     /// Values of parameters by their names.
-    pub fn values(&self) -> impl Iterator<Item = (&str, f64)> {
+    pub(crate) fn values(&self) -> impl Iterator<Item = (&str, f64)> {
         self.values.iter().map(|(name, bits)| (&**name, f64::from_bits(*bits)))
     }
 }

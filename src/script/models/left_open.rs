@@ -30,7 +30,7 @@ pub(crate) struct LeftOpen {
 
 impl LeftOpen {
     /// What a model leaves open; nothing if there is none of this class.
-    pub fn of(library: &Library, model: Option<ClassId>) -> LeftOpen {
+    pub(crate) fn of(library: &Library, model: Option<ClassId>) -> LeftOpen {
         let Some(model) = model else { return LeftOpen { generic: false, connectors: false } };
         let around = std::iter::successors(Some(model), |class| library.enclosing(*class));
         let is_generic = |class| {
@@ -44,12 +44,12 @@ impl LeftOpen {
     }
 
     /// Whether something outside is connected to it.
-    pub fn is_component(self) -> bool {
+    pub(crate) fn is_component(self) -> bool {
         self.connectors
     }
 
     /// Errors and warnings without those that are not the model's fault.
-    pub fn faults(self, mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    pub(crate) fn faults(self, mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
         let slug = |one: &Diagnostic| one.code.slug;
         let is_left = |one: &Diagnostic| self.generic && OPEN.contains(&slug(one));
         let is_incomplete = found.iter().any(is_left);

@@ -57,7 +57,7 @@ impl LibraryFiles for SourceFiles {
 
 impl SourceFiles {
     /// The files of one library; paths are shown relative to the working directory `current`.
-    pub fn new(
+    pub(crate) fn new(
         files: Arc<dyn FileReader>,
         reads: Reads,
         sources: SourceMap,

@@ -14,12 +14,12 @@ const MAGIC: &[u8] = b"gapilib trace 3\n";
 const LONGEST: usize = 1 << 30;
 
 /// What a trace begins with.
-pub fn heading() -> Vec<u8> {
+pub(crate) fn heading() -> Vec<u8> {
     MAGIC.to_vec()
 }
 
 /// Adds the frame of `event`.
-pub fn push(frames: &mut Vec<u8>, event: &Event) {
+pub(crate) fn push(frames: &mut Vec<u8>, event: &Event) {
     let at = frames.len();
     frames.extend([0; 4]);
     let all = postcard::to_extend(event, std::mem::take(frames));
@@ -37,7 +37,7 @@ pub fn push(frames: &mut Vec<u8>, event: &Event) {
 /// # Errors
 ///
 /// `bad-trace` when it does not begin as a trace.
-pub fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
+pub(crate) fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
     let Some(mut rest) = bytes.strip_prefix(MAGIC) else {
         bail!(
             BAD_TRACE, "this is not a trace of gapilib, or one of another version";

@@ -294,7 +294,7 @@ impl Generation {
 }
 
 /// Who mates with the parent of this rank: adjacent ranks, an odd last one with the first.
-pub fn mate(rank: usize, parents: usize) -> usize {
+pub(crate) fn mate(rank: usize, parents: usize) -> usize {
     match rank % 2 {
         1 => rank - 1,
         _ if rank + 1 < parents => rank + 1,

@@ -12,7 +12,7 @@ const IMPROVEMENTS: usize = 9;
 /// Bytes of one gene: before and after crossover and mutation, and its random number.
 const PER_GENE: usize = 36;
 /// No table of a page has more rows than this.
-pub const MOST_ROWS: usize = 100;
+pub(crate) const MOST_ROWS: usize = 100;
 /// Bytes of one row of the table of an operator's call, and of one number of it.
 const PER_ROW: usize = 60;
 const PER_NUMBER: usize = 16;
@@ -21,7 +21,7 @@ const PER_STEP: usize = 260;
 
 /// The generations that a page has.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Kept {
+pub(crate) struct Kept {
     /// Their numbers, from 0, in order.
     pub numbers: Vec<usize>,
     /// How many of the first ones are there without a gap.
@@ -35,7 +35,7 @@ pub struct Kept {
 /// The generations to keep within about `most` bytes: the first and the last, those in which the best
 /// improves, the largest gain first, together with the ones that brought them about, and as many of
 /// the first ones as fit; all of them where they fit.
-pub fn kept(generations: &[Generation], most: usize) -> Kept {
+pub(crate) fn kept(generations: &[Generation], most: usize) -> Kept {
     let costs: Vec<usize> = (0..generations.len()).map(|at| cost(generations, at)).collect();
     let improvements = improvements(generations);
     let last = generations.len().saturating_sub(1);

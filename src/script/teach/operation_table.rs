@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// Individuals one below the other.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
+pub(crate) struct Table {
     /// What the numbers are.
     pub columns: Vec<String>,
     /// The individuals.
@@ -18,7 +18,7 @@ pub struct Table {
 
 /// One individual.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub(crate) struct Row {
     /// What it is called.
     pub name: String,
     /// Its numbers, each with a mark or a blank.
@@ -33,7 +33,7 @@ const CHILDREN: &str = "a, b: the value of that parent; =: both have it; *: neit
 const MUTATED: &str = "*: changed";
 
 /// The table of the step at `row`; `names` are those of the genes.
-pub fn table(operation: &Operation, row: usize, names: &[String]) -> Table {
+pub(crate) fn table(operation: &Operation, row: usize, names: &[String]) -> Table {
     let genes = || names.iter().take(operation.n_genes as usize).cloned();
     match &operation.action {
         Action::Sampling { sampled, .. } => {

@@ -10,7 +10,7 @@ use crate::ga::{has_failed, order};
 const LISTED: usize = 12;
 
 /// What the step at `row` of the call did; `names` are those of the genes.
-pub fn text(operation: &Operation, row: usize, names: &[String]) -> String {
+pub(crate) fn text(operation: &Operation, row: usize, names: &[String]) -> String {
     let named = named(operation);
     match &operation.action {
         Action::Sampling { sampled, minima, maxima } => {

@@ -95,7 +95,7 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 impl Produced {
     /// Follows one event. A script may call the functions on populations of its own, such as single
     /// genes: where an event does not fit to those before, nothing is expected from there on.
-    pub fn follow(&mut self, event: &Event) {
+    pub(crate) fn follow(&mut self, event: &Event) {
         if self.apply(event).is_none() {
             *self = Produced { n_genes: self.n_genes, ..Produced::default() };
         }

@@ -100,7 +100,7 @@ impl Step {
 }
 
 /// The steps of `generation`, which `next` follows.
-pub fn steps(generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
+pub(crate) fn steps(generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
     let mut steps = operated(generation, Part::Opening);
     steps.extend(generation.is_drawn().then_some(Step::Draw));
     if !generation.is_call {

@@ -51,7 +51,7 @@ pub(crate) struct MutationCall<'a> {
 
 impl Tracer {
     /// A tracer whose trace has at most `largest` bytes.
-    pub fn new(largest: usize) -> Tracer {
+    pub(crate) fn new(largest: usize) -> Tracer {
         let unwritten = file::heading();
         Tracer {
             scripts: HashMap::new(),
@@ -77,7 +77,7 @@ impl Tracer {
     }
 
     /// The place of a line in a script; its text is recorded when it is named first.
-    pub fn place(&mut self, path: &Path, text: &str, line: usize) -> ScriptLine {
+    pub(crate) fn place(&mut self, path: &Path, text: &str, line: usize) -> ScriptLine {
         let line = line as u32;
         if let Some(&script) = self.scripts.get(path) {
             return ScriptLine { script, line };
@@ -90,13 +90,13 @@ impl Tracer {
     }
 
     /// `Ram_Gen_ARENA` has drawn `count` numbers.
-    pub fn drawn(&mut self, place: ScriptLine, seed: [f64; 6], count: usize) {
+    pub(crate) fn drawn(&mut self, place: ScriptLine, seed: [f64; 6], count: usize) {
         self.push(&Event::Draw { place, seed, count: count as u32 });
     }
 
     /// `Eval` has simulated individuals, and interpolated Y at the points `x`; `failures` names
     /// those that failed, from 0, and why.
-    pub fn simulated(
+    pub(crate) fn simulated(
         &mut self,
         place: ScriptLine,
         (subject, x): (&Subject, &[f64]),
@@ -117,7 +117,7 @@ impl Tracer {
     }
 
     /// `Fit` has compared individuals with `measured`; `simulated` has one row for each.
-    pub fn rated(
+    pub(crate) fn rated(
         &mut self,
         place: ScriptLine,
         fitness: &[f64],
@@ -138,7 +138,7 @@ impl Tracer {
     }
 
     /// `Fit_Order` has sorted individuals.
-    pub fn sorted(
+    pub(crate) fn sorted(
         &mut self,
         place: ScriptLine,
         (genes, fitness): (&[f64], &[f64]),
@@ -152,7 +152,7 @@ impl Tracer {
     }
 
     /// `Cross` has made children of individuals with `n_genes` genes each.
-    pub fn crossed(
+    pub(crate) fn crossed(
         &mut self,
         place: ScriptLine,
         (genes, n_genes): (&[f64], usize),
@@ -167,7 +167,7 @@ impl Tracer {
     }
 
     /// `Mutation` has changed genes.
-    pub fn mutated(&mut self, place: ScriptLine, call: &MutationCall) {
+    pub(crate) fn mutated(&mut self, place: ScriptLine, call: &MutationCall) {
         self.alone(call.minima.len());
         let genes = Genes::of(call.genes, &self.produced.crossed, self.produced.n_genes);
         let numbers = Numbers::of(call.numbers, &self.produced.numbers);

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// What surrounds the cursor.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Context {
+pub(crate) struct Context {
     /// Where the name begins that is being typed; its last part.
     pub start: usize,
     /// The parts of the name before the last dot.
@@ -22,7 +22,7 @@ pub struct Context {
 
 /// Parentheses that are open.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Open {
+pub(crate) struct Open {
     /// The name before them; empty if there is none.
     pub name: String,
     /// The names to which values are given in them already.
@@ -40,7 +40,7 @@ struct Piece<'t> {
 }
 
 /// What surrounds the byte `offset` of a text.
-pub fn at(text: &str, offset: usize) -> Context {
+pub(crate) fn at(text: &str, offset: usize) -> Context {
     let head = text.get(..offset).unwrap_or(text);
     let mut context = Context { start: head.len(), ..Context::default() };
     let mut pieces: Vec<Piece<'_>> = Vec::new();

@@ -23,7 +23,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// What can be written at a position of a document.
-pub fn items(
+pub(crate) fn items(
     workspace: &mut Workspace,
     document: &Arc<Document>,
     all: &Documents,

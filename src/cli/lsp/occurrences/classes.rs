@@ -196,7 +196,7 @@ impl OccurrenceSearch<'_> {
         }
     }
 
-    pub(super) fn subscripts(&mut self, subscripts: &[Subscript]) {
+    fn subscripts(&mut self, subscripts: &[Subscript]) {
         for subscript in subscripts {
             if let Subscript::Index(index) = subscript {
                 self.expression(index);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// The identifiers in some bytes of a text, those in brackets and strings left out.
-pub fn identifiers(text: &str, within: Range<usize>) -> Vec<Range<usize>> {
+pub(crate) fn identifiers(text: &str, within: Range<usize>) -> Vec<Range<usize>> {
     let Some(part) = text.get(within.clone()) else { return Vec::new() };
     let bytes = part.as_bytes();
     let (mut found, mut depth, mut at) = (Vec::new(), 0_usize, 0);
@@ -57,7 +57,7 @@ fn begins_word(byte: u8) -> bool {
 }
 
 /// Whether a text is an identifier that can be declared.
-pub fn is_identifier(text: &str) -> bool {
+pub(crate) fn is_identifier(text: &str) -> bool {
     let is_word = text.as_bytes().first().is_some_and(|first| begins_word(*first))
         && text.bytes().all(|byte| begins_word(byte) || byte.is_ascii_digit());
     let is_quoted = text.len() > 2

@@ -10,7 +10,7 @@ use super::recovery::Tree;
 use crate::flatten::{ClassId, Declared, Library};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{ClassDefinition, InteractiveKind, StatementKind};
-pub use identifiers::{identifiers, is_identifier};
+pub(crate) use identifiers::{identifiers, is_identifier};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub(crate) enum Entity {
 
 /// A name in a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Occurrence {
+pub(crate) struct Occurrence {
     /// Its bytes.
     pub range: Range<usize>,
     /// What it means.
@@ -39,7 +39,7 @@ pub struct Occurrence {
 }
 
 /// The names of a document that mean something, in the order of the text.
-pub fn of(
+pub(crate) fn of(
     library: &Library,
     parsed: &Parsed,
     commands: &BTreeSet<&'static str>,
@@ -75,7 +75,7 @@ pub fn of(
 }
 
 /// The occurrence at a byte: that around it, or else that which ends there.
-pub fn at(all: &[Occurrence], offset: usize) -> Option<&Occurrence> {
+pub(crate) fn at(all: &[Occurrence], offset: usize) -> Option<&Occurrence> {
     all.iter()
         .find(|one| one.range.contains(&offset))
         .or_else(|| all.iter().find(|one| one.range.end == offset))

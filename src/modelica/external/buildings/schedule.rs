@@ -23,7 +23,7 @@ pub(crate) struct Schedule {
 
 impl Schedule {
     /// Reads a schedule; Monday begins at `offset`.
-    pub fn read(text: &str, offset: f64) -> Result<Schedule, String> {
+    pub(crate) fn read(text: &str, offset: f64) -> Result<Schedule, String> {
         let mut columns: Vec<Vec<(f64, f64)>> = Vec::new();
         for (number, line) in text.lines().enumerate() {
             let mut words = line.split_whitespace();
@@ -65,7 +65,7 @@ impl Schedule {
     }
 
     /// The value of a column (from 1) at a time.
-    pub fn value(&self, column: i64, time: f64) -> Option<f64> {
+    pub(crate) fn value(&self, column: i64, time: f64) -> Option<f64> {
         let column = self.columns.get(usize::try_from(column - 1).ok()?)?;
         let time = (time - self.offset).rem_euclid(WEEK);
         let after = column.partition_point(|(change, _)| *change <= time);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 /// The digest in 40 hexadecimal digits.
-pub fn digest(message: &[u8]) -> String {
+pub(crate) fn digest(message: &[u8]) -> String {
     let mut bytes = message.to_vec();
     bytes.push(0x80);
     while bytes.len() % 64 != 56 {

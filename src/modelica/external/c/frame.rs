@@ -164,7 +164,7 @@ pub(crate) struct CObject {
 
 impl CObject {
     /// Where it is.
-    pub fn address(&self) -> usize {
+    pub(crate) fn address(&self) -> usize {
         self.address
     }
 }

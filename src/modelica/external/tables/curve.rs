@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How points are connected; the order of `Modelica.Blocks.Types.Smoothness`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Smoothness {
+pub(crate) enum Smoothness {
     Linear,
     Constant,
     Spline(Spline),
@@ -27,7 +27,7 @@ impl Smoothness {
 
 /// What lies beyond the points; the order of `Modelica.Blocks.Types.Extrapolation`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extrapolation {
+pub(crate) enum Extrapolation {
     Hold,
     LastTwoPoints,
     Periodic,
@@ -48,7 +48,7 @@ impl Extrapolation {
 
 /// Where a number stands among abscissae.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Interval {
+pub(crate) enum Interval {
     /// In the interval of this number, at this abscissa (which differs from the number asked for
     /// in periodic tables).
     Inside(usize, f64),
@@ -60,7 +60,12 @@ pub enum Interval {
 
 /// Places `u` among abscissae that do not decrease; `None` where extrapolation is refused. An
 /// abscissa belongs to the interval that it begins; the last one to the last interval.
-pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64, near: &Near) -> Option<Interval> {
+pub(crate) fn place(
+    x: &[f64],
+    extrapolation: Extrapolation,
+    u: f64,
+    near: &Near,
+) -> Option<Interval> {
     let (Some(first), Some(last)) = (x.first().copied(), x.last().copied()) else { return None };
     let inside = |u: f64| {
         let interval = near.last_up_to(x, u);
@@ -107,7 +112,7 @@ impl Near {
 
 /// One column of a table over its first.
 #[derive(Debug, Clone)]
-pub struct Curve {
+pub(crate) struct Curve {
     y: Vec<f64>,
     smoothness: Smoothness,
     derivatives: Vec<f64>,
@@ -115,7 +120,7 @@ pub struct Curve {
 
 impl Curve {
     /// Through points whose abscissae do not decrease; for splines they increase strictly.
-    pub fn new(x: &[f64], y: Vec<f64>, smoothness: Smoothness) -> Curve {
+    pub(crate) fn new(x: &[f64], y: Vec<f64>, smoothness: Smoothness) -> Curve {
         let derivatives = match smoothness {
             Smoothness::Spline(spline) if x.len() > 1 => spline.derivatives(x, &y),
             _ => Vec::new(),
@@ -124,7 +129,7 @@ impl Curve {
     }
 
     /// Value, first and second derivative.
-    pub fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Interval) -> [f64; 3] {
+    pub(crate) fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Interval) -> [f64; 3] {
         let n = x.len();
         if n == 1 {
             return [self.y[0], 0.0, 0.0];
@@ -148,7 +153,7 @@ impl Curve {
     }
 
     /// The segment of an interval, continued where `u` is not in it.
-    pub fn inside(&self, x: &[f64], interval: usize, u: f64) -> [f64; 3] {
+    pub(crate) fn inside(&self, x: &[f64], interval: usize, u: f64) -> [f64; 3] {
         let i = interval;
         let (h, s) = (x[i + 1] - x[i], u - x[i]);
         let (y0, y1) = (self.y[i], self.y[i + 1]);

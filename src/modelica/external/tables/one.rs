@@ -10,7 +10,7 @@ use crate::external::call::Call;
 #[derive(Debug)]
 pub(crate) struct Table1D {
     pub(super) x: Vec<f64>,
-    pub(super) curves: Vec<Curve>,
+    curves: Vec<Curve>,
     pub(super) smoothness: Smoothness,
     pub(super) extrapolation: Extrapolation,
     near: Near,
@@ -19,7 +19,7 @@ pub(crate) struct Table1D {
 impl Table1D {
     /// From a matrix and arguments of the call: the requested columns, smoothness, extrapolation.
     /// Abscissae may repeat if `jumps`, but not for splines.
-    pub fn new(
+    pub(crate) fn new(
         call: &Call<'_>,
         matrix: &Matrix,
         columns: usize,
@@ -53,14 +53,14 @@ impl Table1D {
     }
 
     /// The curve of a column, from 1.
-    pub fn curve(&self, call: &Call<'_>, column: i64) -> Result<&Curve, Fault> {
+    pub(crate) fn curve(&self, call: &Call<'_>, column: i64) -> Result<&Curve, Fault> {
         let position = usize::try_from(column - 1).ok();
         position
             .and_then(|position| self.curves.get(position))
             .ok_or_else(|| call.fault(format!("there is no column {column}")))
     }
 
-    pub fn place(&self, call: &Call<'_>, u: f64) -> Result<Interval, Fault> {
+    pub(crate) fn place(&self, call: &Call<'_>, u: f64) -> Result<Interval, Fault> {
         if u.is_nan() {
             return Err(call.fault("the abscissa is not a number"));
         }
@@ -72,7 +72,7 @@ impl Table1D {
 }
 
 /// Whether abscissae increase, strictly unless `jumps`.
-pub fn ordered(call: &Call<'_>, x: &[f64], what: &str, jumps: bool) -> Result<(), Fault> {
+pub(crate) fn ordered(call: &Call<'_>, x: &[f64], what: &str, jumps: bool) -> Result<(), Fault> {
     let wrong = x.windows(2).find(|x| if jumps { x[1] < x[0] } else { x[1] <= x[0] });
     match wrong {
         Some(x) => Err(call.fault(format!(
@@ -86,7 +86,7 @@ pub fn ordered(call: &Call<'_>, x: &[f64], what: &str, jumps: bool) -> Result<()
 }
 
 /// `(tableName, fileName, table, nRow, nColumn, columns, nCols, smoothness)`
-pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, 2)
 }
 
@@ -117,31 +117,31 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 3], Fault> {
 }
 
 /// `y = f(u)`
-pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
     let [y, ..] = evaluated(call)?;
     call.give(y)
 }
 
 /// `f′(u) u′`
-pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, derivative, _] = evaluated(call)?;
     call.give(derivative * call.number(3))
 }
 
 /// `f″(u) u′² + f′(u) u″`
-pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, derivative, curvature] = evaluated(call)?;
     call.give(curvature * elementary::powi(call.number(3), 2) + derivative * call.number(4))
 }
 
 /// The first abscissa.
-pub fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
     let first = call.object::<Table1D>(0)?.x[0];
     call.give(first)
 }
 
 /// The last abscissa.
-pub fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
     let x = &call.object::<Table1D>(0)?.x;
     let last = x[x.len() - 1];
     call.give(last)

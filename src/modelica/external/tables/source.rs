@@ -5,20 +5,20 @@ use crate::external::call::Call;
 
 /// A matrix, row-major.
 #[derive(Debug, Clone)]
-pub struct Matrix {
+pub(crate) struct Matrix {
     pub(super) rows: usize,
     pub(super) columns: usize,
     pub(super) values: Vec<f64>,
 }
 
 impl Matrix {
-    pub fn column(&self, column: usize) -> Vec<f64> {
+    pub(crate) fn column(&self, column: usize) -> Vec<f64> {
         (0..self.rows).map(|row| self.values[row * self.columns + column]).collect()
     }
 }
 
 /// Positions of the arguments that say where a table comes from.
-pub struct Source {
+pub(crate) struct Source {
     pub(super) file: usize,
     pub(super) name: usize,
     pub(super) matrix: usize,
@@ -36,7 +36,7 @@ pub(crate) fn names_a_file(text: &str) -> bool {
 
 impl Source {
     /// The matrix, at least one row and two columns, every number finite.
-    pub fn read(&self, call: &mut Call<'_>) -> Result<Matrix, Fault> {
+    pub(crate) fn read(&self, call: &mut Call<'_>) -> Result<Matrix, Fault> {
         let file = call.text(self.file).to_owned();
         let matrix = match names_a_file(&file) {
             true => self.in_file(call, &file)?,

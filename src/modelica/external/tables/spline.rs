@@ -19,7 +19,7 @@ pub(crate) enum Spline {
 
 impl Spline {
     /// The derivative at every point; at least two points.
-    pub fn derivatives(self, x: &[f64], y: &[f64]) -> Vec<f64> {
+    pub(crate) fn derivatives(self, x: &[f64], y: &[f64]) -> Vec<f64> {
         let h: Vec<f64> = x.windows(2).map(|x| x[1] - x[0]).collect();
         let m: Vec<f64> = y.windows(2).zip(&h).map(|(y, h)| (y[1] - y[0]) / h).collect();
         if m.len() == 1 {
@@ -36,7 +36,7 @@ impl Spline {
 
 /// Secants with two more at either end, which continue the last two linearly; a single one is
 /// repeated.
-pub fn extended(m: &[f64]) -> Vec<f64> {
+pub(crate) fn extended(m: &[f64]) -> Vec<f64> {
     let n = m.len();
     if n == 1 {
         return vec![m[0]; 5];
@@ -52,7 +52,7 @@ pub fn extended(m: &[f64]) -> Vec<f64> {
 
 /// The shares of the secants before and after a point in the derivative there; `m` are the two
 /// secants on either side.
-pub fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
+pub(crate) fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
     let (before, after) = (weight(m[2], m[3]), weight(m[0], m[1]));
     match before + after {
         0.0 => [0.5, 0.5],
@@ -61,7 +61,7 @@ pub fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
 }
 
 /// The difference of two secants.
-pub fn difference(a: f64, b: f64) -> f64 {
+pub(crate) fn difference(a: f64, b: f64) -> f64 {
     (b - a).abs()
 }
 

@@ -6,7 +6,7 @@ use super::spline::{Spline, difference, extended, shares};
 
 /// Value, both first derivatives and the mixed derivative at every point of the grid, row-major.
 #[derive(Debug)]
-pub struct Surface {
+pub(crate) struct Surface {
     nodes: Vec<[f64; 4]>,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Basis {
 
 impl Basis {
     /// In the interval `low` of the abscissae; an axis of one point has no intervals.
-    pub fn new(x: &[f64], low: usize, u: f64) -> Basis {
+    pub(crate) fn new(x: &[f64], low: usize, u: f64) -> Basis {
         if x.len() == 1 {
             let value = [1.0, 0.0, 0.0, 0.0];
             return Basis { low: 0, high: 0, weights: [value, [0.0; 4], [0.0; 4]] };
@@ -45,7 +45,7 @@ impl Basis {
 
 impl Surface {
     /// Through `z`, row-major over `x`, then `y`.
-    pub fn new(x: &[f64], y: &[f64], z: &[f64]) -> Surface {
+    pub(crate) fn new(x: &[f64], y: &[f64], z: &[f64]) -> Surface {
         let (rows, columns) = (x.len(), y.len());
         let column = |j: usize| (0..rows).map(|i| z[i * columns + j]).collect::<Vec<f64>>();
         let by_x: Vec<Line> = (0..columns).map(|j| Line::new(x, &column(j))).collect();
@@ -73,7 +73,14 @@ impl Surface {
     }
 
     /// A derivative of orders `p` and `q`, at most 2 each.
-    pub fn derivative(&self, columns: usize, a: &Basis, b: &Basis, p: usize, q: usize) -> f64 {
+    pub(crate) fn derivative(
+        &self,
+        columns: usize,
+        a: &Basis,
+        b: &Basis,
+        p: usize,
+        q: usize,
+    ) -> f64 {
         let (wa, wb) = (&a.weights[p], &b.weights[q]);
         let corner = |i: usize, wa: &[f64], j: usize, wb: &[f64]| {
             let [z, zx, zy, zxy] = self.nodes[i * columns + j];

@@ -34,7 +34,7 @@ const NEVER: f64 = f64::MAX;
 
 /// `(tableName, fileName, table, nRow, nColumn, startTime, columns, nCols, smoothness,
 /// extrapolation)`
-pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     let start = call.number(5);
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, start, TimeEvents::Always)
 }
@@ -106,38 +106,38 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 3], Fault> {
 }
 
 /// The value at a time.
-pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
     let [y, ..] = evaluated(call)?;
     call.give(y)
 }
 
 /// `f′(t) t′`
-pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, derivative, _] = evaluated(call)?;
     call.give(derivative * call.number(5))
 }
 
 /// `f″(t) t′² + f′(t) t″`
-pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, derivative, curvature] = evaluated(call)?;
     call.give(curvature * elementary::powi(call.number(5), 2) + derivative * call.number(6))
 }
 
 /// The first abscissa.
-pub fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
     let first = call.object::<TimeTable>(0)?.table.x[0];
     call.give(first)
 }
 
 /// The last abscissa.
-pub fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
     let x = &call.object::<TimeTable>(0)?.table.x;
     let last = x[x.len() - 1];
     call.give(last)
 }
 
 /// The first event after a time.
-pub fn next_event(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn next_event(call: &mut Call<'_>) -> Result<(), Fault> {
     let next = call.object::<TimeTable>(0)?.next_event(call.number(1));
     call.give(next)
 }

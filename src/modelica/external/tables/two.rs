@@ -31,7 +31,7 @@ enum Shape {
 }
 
 /// `(tableName, fileName, table, nRow, nColumn, smoothness)`
-pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, 2)
 }
 
@@ -198,19 +198,19 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 6], Fault> {
 }
 
 /// `f(u₁, u₂)`
-pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
     let [z, ..] = evaluated(call)?;
     call.give(z)
 }
 
 /// `f₁ u₁′ + f₂ u₂′`
-pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, first, second, ..] = evaluated(call)?;
     call.give(first * call.number(3) + second * call.number(4))
 }
 
 /// `f₁₁ u₁′² + 2 f₁₂ u₁′ u₂′ + f₂₂ u₂′² + f₁ u₁″ + f₂ u₂″`
-pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, first, second, mixed, along, across] = evaluated(call)?;
     let (p, q) = (call.number(3), call.number(4));
     let quadratic = along * p * p + 2.0 * mixed * p * q + across * q * q;
@@ -218,14 +218,14 @@ pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// The first abscissae.
-pub fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
     let table: &Table2D = call.object(0)?;
     let ends = [table.x[0], table.y[0]];
     write_ends(call, ends)
 }
 
 /// The last abscissae.
-pub fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
     let table: &Table2D = call.object(0)?;
     let ends = [table.x[table.x.len() - 1], table.y[table.y.len() - 1]];
     write_ends(call, ends)

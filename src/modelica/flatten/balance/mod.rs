@@ -27,7 +27,7 @@ const MAX_CLASSES: usize = 3;
 
 /// An error if the numbers differ. Where the size of an equation does not follow from its text, the
 /// model is left to the matching of equations and unknowns.
-pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
+pub(crate) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
     let unknowns = unknowns(model);
     let Some(equations) = equations(model) else { return Ok(()) };
     if equations == unknowns || equations + idle_inputs::idle_inputs(model) == unknowns {
@@ -111,7 +111,7 @@ impl SizesOfNames for SizesIn<'_> {
 /// Warnings about classes that are not balanced by themselves though the model is: their parts
 /// make up for each other. One for each library, as older ones do not know the rule, and about a
 /// part rather than about what holds it.
-pub fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
+pub(crate) fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
     let mut named = BTreeSet::new();
     let mut found: Vec<&LocalBalance> = unbalanced(classes).collect();
     found.reverse();
@@ -166,7 +166,7 @@ fn scalars(output: &Expression, dims: &mut Dims<'_>) -> Option<usize> {
 }
 
 /// The name of the variable that a flat reference names, without the last subscripts.
-pub fn path(reference: &ComponentReference) -> Cow<'static, str> {
+pub(crate) fn path(reference: &ComponentReference) -> Cow<'static, str> {
     if let [part] = &reference.parts[..] {
         return part.name.as_str().into();
     }

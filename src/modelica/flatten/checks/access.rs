@@ -12,7 +12,7 @@ use crate::source::Span;
 use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
 
 /// Checks every name with dots that a class writes.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for written in names::of(class) {
         let unclear = unqualified(class, &written.name, written.span);
         errors.extend(unclear.or_else(|| path(class, &written)));

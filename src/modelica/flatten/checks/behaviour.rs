@@ -42,7 +42,7 @@ const NESTED_WHEN: (&str, &str) = (
 );
 
 /// Checks the own sections of a class.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
     let mut walk = BehaviourCheck { class, loops: Vec::new(), errors };
     if !is_function {

@@ -12,7 +12,7 @@ use rustc_hash::FxHashSet;
 pub(crate) struct Lack(pub String);
 
 /// What a class lacks to stand where `expected` is expected.
-pub fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {
+pub(crate) fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {
     lack_within(candidate, expected, &mut Compared::default())
 }
 
@@ -89,7 +89,7 @@ fn is_known(class: Scope<'_>) -> bool {
 }
 
 /// The number of dimensions that a type itself has, through short classes.
-pub fn dimensions(class: Scope<'_>) -> usize {
+pub(crate) fn dimensions(class: Scope<'_>) -> usize {
     let short = class.lineage().filter_map(|class| match &class.definition().specifier {
         ClassSpecifier::Short(short) => Some(short.subscripts.len()),
         _ => None,

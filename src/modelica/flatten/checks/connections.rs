@@ -14,7 +14,7 @@ use crate::syntax::ast::{
 use crate::syntax::visit::{Visit, walk_equation};
 
 /// Checks the `connect` equations that a class itself writes.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut walk = ConnectCheck { class, errors };
     for section in class.sections() {
         if let Section::Equations { equations, .. } = section {

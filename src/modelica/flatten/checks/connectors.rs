@@ -28,7 +28,7 @@ struct Count {
 
 /// Checks a connector class: as many flow variables as potential variables, and one scalar flow
 /// variable beside stream variables.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_long = !class.sections().is_empty();
     if class.restriction() != Restriction::Connector || !is_long || class.definition().partial {
         return;

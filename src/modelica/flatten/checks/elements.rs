@@ -21,7 +21,7 @@ const PREDEFINED: &[&str] = &["Real", "Integer", "Boolean", "String"];
 const ENUMERATION_ATTRIBUTES: &[&str] = &["quantity", "min", "max", "start", "fixed"];
 
 /// Checks the names that a class declares, its literals and its extends clauses.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let definition = class.definition();
     reserved(definition.name, errors);
     match &definition.specifier {

@@ -11,7 +11,7 @@ use crate::syntax::ast::{Element, Import, ImportKind, Restriction, Visibility};
 use rustc_hash::FxHashMap;
 
 /// Checks the import clauses of a class.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut named: FxHashMap<Ident, (Name, Span)> = FxHashMap::default();
     for (_, element) in class.elements() {
         let Element::Import(import) = element else { continue };
@@ -49,7 +49,7 @@ fn named_by(kind: &ImportKind) -> Vec<(Ident, Name)> {
 }
 
 /// Whether an import of a class declares a name.
-pub fn names(class: Scope<'_>, name: Ident) -> bool {
+pub(crate) fn names(class: Scope<'_>, name: Ident) -> bool {
     let imports = class.library.class(class.class).imports();
     imports.iter().flat_map(named_by).any(|(own, _)| own == name)
 }

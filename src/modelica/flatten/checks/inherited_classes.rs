@@ -9,7 +9,7 @@ use crate::syntax::ast::{ClassElement, ClassSpecifier, Element};
 use crate::syntax::print;
 
 /// Checks the classes that a class itself declares.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     // The standard library has 30 such classes: it is reported only in strict conformance checks.
     if !class.library.is_strict() {
         return;

@@ -21,7 +21,7 @@ pub(crate) struct Lineage<'a> {
 
 impl<'a> Lineage<'a> {
     /// The lineage of a class, itself first.
-    pub fn of(library: &'a Library, class: ClassId) -> Lineage<'a> {
+    pub(crate) fn of(library: &'a Library, class: ClassId) -> Lineage<'a> {
         let seen = FxHashSet::default();
         Lineage { library, seen, pending: vec![class], bases: None, is_alone: true }
     }

@@ -34,7 +34,7 @@ use scope::Scope;
 
 /// What is wrong with a class and with those that take part in it; the errors of one class
 /// follow each other.
-pub fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+pub(crate) fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
     for class in participants::of(Scope { library, class }) {
         check_one(class, &mut errors);
@@ -43,7 +43,7 @@ pub fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
 }
 
 /// What is wrong with one class, whatever takes part in it, names that mean nothing included.
-pub fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+pub(crate) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
     let class = Scope { library, class };
     unknown::check(class, &mut errors);

@@ -19,7 +19,7 @@ const MAX_DEPTH: usize = 100;
 
 /// Checks the modifications of the own components and base classes of a class, the elements that
 /// it redeclares, and its `extends M(…)` classes.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     if let ClassSpecifier::Short(short) = &class.definition().specifier
         && let Some(base) = class.parent().and_then(|p| p.class_named(&short.target.name))
     {

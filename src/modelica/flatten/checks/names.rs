@@ -14,7 +14,7 @@ use crate::syntax::visit::{
 };
 
 /// A name and where it is written.
-pub struct Written {
+pub(crate) struct Written {
     pub name: Name,
     pub span: Span,
     /// It is the base of an extends clause.
@@ -23,7 +23,7 @@ pub struct Written {
 
 /// All names that a class itself writes, those of loop variables left out. What short classes
 /// write is looked up in the class around them and not listed.
-pub fn of(class: Scope<'_>) -> Vec<Written> {
+pub(crate) fn of(class: Scope<'_>) -> Vec<Written> {
     let mut walk = WrittenNames::default();
     if !matches!(class.definition().specifier, ClassSpecifier::Long(_)) {
         return Vec::new();
@@ -44,7 +44,7 @@ pub fn of(class: Scope<'_>) -> Vec<Written> {
 }
 
 /// Whether a simple name means a component in a class.
-pub fn is_component(class: Scope<'_>, name: Ident) -> bool {
+pub(crate) fn is_component(class: Scope<'_>, name: Ident) -> bool {
     let found = class.library.parts_of_reference(Some(class.class), &name.into());
     matches!(found.first(), Some(Some(Declared::Component(..))))
 }

@@ -14,7 +14,7 @@ const BINARY: &[&str] =
     &["'+'", "'*'", "'/'", "'^'", "'=='", "'<>'", "'>'", "'<'", "'>='", "'<='", "'and'", "'or'"];
 
 /// Checks the operators of an operator record.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     if class.restriction() != Restriction::OperatorRecord {
         return;
     }

@@ -14,7 +14,7 @@ use crate::syntax::visit::{
 use rustc_hash::FxHashSet;
 
 /// A class and all that take part in it, each once, in the order in which they are met.
-pub fn of(root: Scope<'_>) -> Vec<Scope<'_>> {
+pub(crate) fn of(root: Scope<'_>) -> Vec<Scope<'_>> {
     let mut seen: FxHashSet<ClassId> = [root.class].into_iter().collect();
     let mut found = vec![root];
     let mut next = 0;

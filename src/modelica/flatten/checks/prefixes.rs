@@ -16,7 +16,7 @@ use crate::syntax::ast::{
 const MAX_CLASSES: usize = 200;
 
 /// Checks the prefixes of the own components of a class, and those of a short class.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for component in class.components() {
         let found = wrong_use(class, &component)
             .or_else(|| wrong_kind(&component))

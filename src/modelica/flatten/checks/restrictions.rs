@@ -10,7 +10,7 @@ use crate::syntax::ast::{
 };
 
 /// Checks the own contents of a class against its keyword.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     match class.restriction() {
         Restriction::Record | Restriction::OperatorRecord => record(class, errors),
         Restriction::Connector | Restriction::ExpandableConnector => connector(class, errors),
@@ -280,7 +280,7 @@ fn prefixed(class: Scope<'_>, component: &Component<'_>, prefix: &str) -> Diagno
 }
 
 /// Where an element is written.
-pub fn place(element: &Element) -> Span {
+pub(crate) fn place(element: &Element) -> Span {
     match element {
         Element::Import(import) => import.span,
         Element::Extends(extends) => extends.span,

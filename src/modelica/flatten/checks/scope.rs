@@ -15,14 +15,14 @@ const MAX_CHAIN: usize = 100;
 
 /// A class of a library, as the checks see it.
 #[derive(Clone, Copy)]
-pub struct Scope<'a> {
+pub(crate) struct Scope<'a> {
     pub library: &'a Library,
     pub class: ClassId,
 }
 
 /// A component with the clause and the class that declare it.
 #[derive(Clone, Copy)]
-pub struct Component<'a> {
+pub(crate) struct Component<'a> {
     pub owner: Scope<'a>,
     pub visibility: Visibility,
     pub clause: &'a ComponentClause,
@@ -31,27 +31,27 @@ pub struct Component<'a> {
 
 impl<'a> Scope<'a> {
     /// Another class of the same library.
-    pub fn of(self, class: ClassId) -> Scope<'a> {
+    pub(crate) fn of(self, class: ClassId) -> Scope<'a> {
         Scope { class, ..self }
     }
 
     /// Its definition.
-    pub fn definition(self) -> &'a ClassDefinition {
+    pub(crate) fn definition(self) -> &'a ClassDefinition {
         &self.library.class(self.class).definition
     }
 
     /// Its keyword.
-    pub fn restriction(self) -> Restriction {
+    pub(crate) fn restriction(self) -> Restriction {
         self.definition().restriction
     }
 
     /// Its full name.
-    pub fn name(self) -> &'a Name {
+    pub(crate) fn name(self) -> &'a Name {
         &self.library.class(self.class).name
     }
 
     /// The class that it is written in.
-    pub fn parent(self) -> Option<Scope<'a>> {
+    pub(crate) fn parent(self) -> Option<Scope<'a>> {
         self.library.class(self.class).parent.map(|parent| self.of(parent))
     }
 
@@ -61,17 +61,17 @@ impl<'a> Scope<'a> {
     }
 
     /// Its sections; none for a short class.
-    pub fn sections(self) -> &'a [Section] {
+    pub(crate) fn sections(self) -> &'a [Section] {
         self.library.class(self.class).sections()
     }
 
     /// Its own elements with their visibility.
-    pub fn elements(self) -> impl Iterator<Item = (Visibility, &'a Element)> {
+    pub(crate) fn elements(self) -> impl Iterator<Item = (Visibility, &'a Element)> {
         self.library.class(self.class).elements()
     }
 
     /// Its own components.
-    pub fn components(self) -> impl Iterator<Item = Component<'a>> {
+    pub(crate) fn components(self) -> impl Iterator<Item = Component<'a>> {
         self.elements().flat_map(move |element| self.components_of(element))
     }
 
@@ -102,17 +102,17 @@ impl<'a> Scope<'a> {
     }
 
     /// The class of a name that it declares itself.
-    pub fn own_class(self, name: Ident) -> Option<Scope<'a>> {
+    pub(crate) fn own_class(self, name: Ident) -> Option<Scope<'a>> {
         self.library.class(self.class).child(name).map(|class| self.of(class))
     }
 
     /// Itself and all classes that it extends or is short for.
-    pub fn lineage(self) -> impl Iterator<Item = Scope<'a>> {
+    pub(crate) fn lineage(self) -> impl Iterator<Item = Scope<'a>> {
         Lineage::of(self.library, self.class).map(move |(class, _)| self.of(class))
     }
 
     /// The first of its lineage that answers a question; each is asked once.
-    pub fn first(
+    pub(crate) fn first(
         self,
         question: BaseProperty,
         answers: impl Fn(Scope<'a>) -> bool,
@@ -123,7 +123,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Its component of a name, its own or inherited.
-    pub fn component(self, name: Ident) -> Option<Component<'a>> {
+    pub(crate) fn component(self, name: Ident) -> Option<Component<'a>> {
         let declaring = self.library.declaring(self.class, name, false)?;
         self.of(declaring).own_component(name)
     }
@@ -142,7 +142,7 @@ impl<'a> Scope<'a> {
 
     /// The components that the parts of a reference name, followed through their classes as they
     /// are declared; `None` where a redeclaration could change them.
-    pub fn path(self, reference: &ComponentReference) -> Option<Vec<Component<'a>>> {
+    pub(crate) fn path(self, reference: &ComponentReference) -> Option<Vec<Component<'a>>> {
         if reference.global {
             return None;
         }
@@ -164,7 +164,7 @@ impl<'a> Scope<'a> {
     }
 
     /// What a name of a type or class means in it.
-    pub fn meaning(self, name: &Name) -> Option<Type> {
+    pub(crate) fn meaning(self, name: &Name) -> Option<Type> {
         self.library.meaning(Some(self.class), name)
     }
 
@@ -199,7 +199,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The predefined type that it is made of, through short classes and extends clauses.
-    pub fn predefined(self) -> Option<Predefined> {
+    pub(crate) fn predefined(self) -> Option<Predefined> {
         let is_one = |class: Scope<'a>| class.own_predefined().is_some();
         self.first(BaseProperty::Predefined, is_one)?.own_predefined()
     }
@@ -219,7 +219,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The enumeration that it is, by itself or through others.
-    pub fn enumeration(self) -> Option<Scope<'a>> {
+    pub(crate) fn enumeration(self) -> Option<Scope<'a>> {
         self.first(BaseProperty::Enumeration, |class| {
             matches!(class.definition().specifier, ClassSpecifier::Enumeration(_))
         })
@@ -231,7 +231,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Whether it, or a class around it, is declared replaceable.
-    pub fn is_replaceable(self) -> bool {
+    pub(crate) fn is_replaceable(self) -> bool {
         std::iter::successors(Some(self), |class| class.parent())
             .any(|class| self.library.class(class.class).prefixes().replaceable)
     }
@@ -239,17 +239,17 @@ impl<'a> Scope<'a> {
 
 impl<'a> Component<'a> {
     /// What its type means.
-    pub fn meaning(&self) -> Option<Type> {
+    pub(crate) fn meaning(&self) -> Option<Type> {
         self.owner.meaning(&self.clause.type_specifier.name)
     }
 
     /// The class of its type.
-    pub fn class(&self) -> Option<Scope<'a>> {
+    pub(crate) fn class(&self) -> Option<Scope<'a>> {
         self.owner.class_named(&self.clause.type_specifier.name)
     }
 
     /// Whether it, or its type, is declared constant or parameter.
-    pub fn is_fixed(&self) -> bool {
+    pub(crate) fn is_fixed(&self) -> bool {
         let fixed = |prefixes: &TypePrefixes| {
             let variability = prefixes.variability;
             matches!(variability, Some(VariabilityPrefix::Constant | VariabilityPrefix::Parameter))
@@ -266,7 +266,7 @@ impl<'a> Component<'a> {
     }
 
     /// Its name.
-    pub fn name(&self) -> Ident {
+    pub(crate) fn name(&self) -> Ident {
         self.declaration.name.node
     }
 }

@@ -31,12 +31,12 @@ enum CheckedType {
 }
 
 /// Checks the conditions and relations that a class itself writes.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     check_as(class, false, errors);
 }
 
 /// Checks the values that a class itself gives to its variables as well.
-pub fn check_with_values(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check_with_values(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     check_as(class, true, errors);
 }
 
@@ -233,7 +233,7 @@ impl TypeCheck<'_, '_> {
 }
 
 /// Whether an expression in a class is a number, as far as the class tells.
-pub fn is_number(class: Scope<'_>, e: &Expression) -> bool {
+pub(crate) fn is_number(class: Scope<'_>, e: &Expression) -> bool {
     DeclaredTypes { class, loops: Vec::new() }.type_of(e) == Some(CheckedType::Number)
 }
 

@@ -21,7 +21,7 @@ use crate::syntax::visit::{
 };
 
 /// Checks the expressions that a class itself writes.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
     let mut walk = UsageCheck { class, is_function, conditional: false, errors };
     for component in class.components() {
@@ -285,7 +285,7 @@ fn number(expression: &Expression) -> Option<f64> {
     }
 }
 
-pub fn predefined(component: &Component<'_>) -> Option<Predefined> {
+pub(crate) fn predefined(component: &Component<'_>) -> Option<Predefined> {
     match component.meaning()? {
         Type::Predefined(predefined) => Some(predefined),
         Type::Class(class) => component.owner.of(class).predefined(),

@@ -8,7 +8,7 @@ use crate::syntax::ast::{ComponentReference, Expression};
 
 /// Whether an expression in a class keeps its value during a simulation. Names that the class does
 /// not tell about, and those of the loop variables around, are taken to do so.
-pub fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
+pub(crate) fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
     let most = most_variable(&mut DeclaredVariability { class, loops }, expression);
     most.is_none_or(|most| most.variability <= Variability::Parameter)
 }

@@ -9,14 +9,14 @@ use crate::source::Span;
 use crate::syntax::ast::Visibility;
 
 /// The diagnostic for a protected element of a class.
-pub fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
+pub(crate) fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
     fault!(PROTECTED_ACCESS, "`{name}` is protected in `{}`", class.name();
         help: "move the declaration before `protected`")
     .at(span)
 }
 
 /// An element of a class, as names with dots see it.
-pub struct Found {
+pub(crate) struct Found {
     pub visibility: Visibility,
     pub encapsulated: bool,
 }
@@ -29,7 +29,7 @@ impl Found {
 }
 
 /// The element of a class, its own or inherited, among those written in its file.
-pub fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
+pub(crate) fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
     let declaring = class.library.declaring(class.class, name, true)?;
     own_element(class.of(declaring), name)
 }

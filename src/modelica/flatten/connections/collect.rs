@@ -18,7 +18,7 @@ use crate::syntax::ast::{
 use crate::value::Value;
 
 /// A `connect` equation in one instance.
-pub struct Connect {
+pub(crate) struct Connect {
     pub left: ComponentReference,
     pub right: ComponentReference,
     pub context: ScopeId,
@@ -29,7 +29,11 @@ pub struct Connect {
 
 impl Instantiation<'_> {
     /// All connections below an instance, as sets; errors are added to the list.
-    pub fn connections(&mut self, root: NodeId, errors: &mut Vec<Diagnostic>) -> Connections {
+    pub(crate) fn connections(
+        &mut self,
+        root: NodeId,
+        errors: &mut Vec<Diagnostic>,
+    ) -> Connections {
         let connections = Connections::default();
         let mut collector = Collector { instantiation: self, connections, connects: Vec::new() };
         collector.collect(root, errors);

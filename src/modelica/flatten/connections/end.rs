@@ -4,7 +4,7 @@ use crate::flatten::ids::NodeId;
 
 /// One connector, or one scalar of a connector that is a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum End {
+pub(crate) enum End {
     /// A connector with components.
     Composite(NodeId),
     /// A scalar: the variable's node and the place of the element in it, from 0.
@@ -13,7 +13,7 @@ pub enum End {
 
 impl End {
     /// The connector, or the variable that the scalar is of.
-    pub fn node(self) -> NodeId {
+    pub(crate) fn node(self) -> NodeId {
         match self {
             End::Composite(node) | End::Scalar(node, _) => node,
         }
@@ -22,7 +22,7 @@ impl End {
 
 /// The connectors that a reference names.
 #[derive(Debug, Clone)]
-pub struct Ends {
+pub(crate) struct Ends {
     /// Sizes of the dimensions that subscripts leave.
     pub dims: Vec<usize>,
     /// One connector for each, the last index fastest.

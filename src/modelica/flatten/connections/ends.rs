@@ -17,7 +17,7 @@ use crate::syntax::ast::{ComponentReference, ReferencePart, Subscript};
 
 impl Instantiation<'_> {
     /// The connectors that a reference names; `None` if one of its components does not exist.
-    pub fn ends(
+    pub(crate) fn ends(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,

@@ -44,16 +44,16 @@ pub(crate) struct Graph {
 
 impl Graph {
     /// The redundant records that take part.
-    pub fn nodes(&self) -> impl Iterator<Item = NodeId> {
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = NodeId> {
         self.nodes.iter().copied()
     }
 
-    pub fn branch(&mut self, one: NodeId, other: NodeId) {
+    pub(crate) fn branch(&mut self, one: NodeId, other: NodeId) {
         self.nodes.extend([one, other]);
         self.branches.push((one, other));
     }
 
-    pub fn root(&mut self, node: NodeId) {
+    pub(crate) fn root(&mut self, node: NodeId) {
         self.nodes.insert(node);
         self.definite.push(node);
     }
@@ -64,13 +64,13 @@ impl Graph {
     }
 
     /// A root whose graph may have no other one, with what is said of a second one.
-    pub fn unique_root(&mut self, node: NodeId, message: &str, span: Span) {
+    pub(crate) fn unique_root(&mut self, node: NodeId, message: &str, span: Span) {
         self.root(node);
         self.unique.entry(node).or_insert(UniqueRoot { message: message.to_owned(), span });
     }
 
     /// Two unique roots of one graph, with the message and the place of the second.
-    pub fn ambiguous_roots(&self) -> Option<([NodeId; 2], &str, Span)> {
+    pub(crate) fn ambiguous_roots(&self) -> Option<([NodeId; 2], &str, Span)> {
         let mut first: FxHashMap<usize, NodeId> = FxHashMap::default();
         self.unique.iter().find_map(|(node, root)| {
             let before = first.insert(*self.parts.get(node)?, *node)?;
@@ -82,7 +82,7 @@ impl Graph {
     ///
     /// # Errors
     /// The first node that none of the roots left over is connected with.
-    pub fn indices_of_roots(
+    pub(crate) fn indices_of_roots(
         &self,
         roots: &[NodeId],
         nodes: &[NodeId],
@@ -99,13 +99,19 @@ impl Graph {
         Ok(indices)
     }
 
-    pub fn connect(&mut self, one: NodeId, other: NodeId, outside: (bool, bool), span: Span) {
+    pub(crate) fn connect(
+        &mut self,
+        one: NodeId,
+        other: NodeId,
+        outside: (bool, bool),
+        span: Span,
+    ) {
         self.nodes.extend([one, other]);
         self.edges.push(Edge { nodes: (one, other), outside, span });
     }
 
     /// Whether a node was chosen as the root of its tree.
-    pub fn is_root(&self, node: NodeId) -> bool {
+    pub(crate) fn is_root(&self, node: NodeId) -> bool {
         self.roots.contains(&node)
     }
 
@@ -123,12 +129,12 @@ impl Graph {
     }
 
     /// The connections that the tree does not hold.
-    pub fn broken(&self) -> &[Edge] {
+    pub(crate) fn broken(&self) -> &[Edge] {
         &self.broken
     }
 
     /// Chooses the tree; returns the connections that it holds.
-    pub fn span(&mut self) -> Vec<Edge> {
+    pub(crate) fn span(&mut self) -> Vec<Edge> {
         let mut sets = Sets::new(self.nodes.len());
         let at = |nodes: &IndexSet<NodeId>, node: NodeId| nodes.get_index_of(&node).unwrap_or(0);
         for node in &self.definite {

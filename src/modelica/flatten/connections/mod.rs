@@ -8,17 +8,17 @@
 //! as in the connections made inside that component.
 
 mod collect;
-pub mod end;
+pub(crate) mod end;
 mod ends;
 mod expandable;
-pub mod graph;
+pub(crate) mod graph;
 mod operators;
 mod overconstrained;
 pub(crate) mod own_signals;
 mod pairs;
 mod set_equations;
-pub mod sets;
+pub(crate) mod sets;
 mod stream;
 
 pub(crate) use sets::ScalarPair;
-pub use stream::arranged;
+pub(crate) use stream::arranged;

@@ -20,7 +20,7 @@ use crate::syntax::ast::{ConnectionPrefix, Expression, ExpressionKind, Subscript
 
 impl Classes<'_> {
     /// Joins the scalars of two connectors, matched by name (MLS §9.3).
-    pub fn pair(
+    pub(crate) fn pair(
         &mut self,
         one: End,
         other: End,
@@ -180,7 +180,7 @@ impl Tree {
     }
 
     /// One scalar of a variable as an expression of flat names.
-    pub fn scalar(&self, leaf: NodeId, element: usize, span: Span) -> Expression {
+    pub(crate) fn scalar(&self, leaf: NodeId, element: usize, span: Span) -> Expression {
         let mut reference = flat_reference(&self.nodes[leaf.0].path, span);
         if let NodeKind::Variable(variable) = &self.nodes[leaf.0].kind {
             let dims = &self.variables[variable.variable].0.dims;

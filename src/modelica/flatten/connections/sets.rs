@@ -27,7 +27,7 @@ pub(crate) struct ScalarPair {
 
 /// All connection sets of a model.
 #[derive(Debug, Default)]
-pub struct Connections {
+pub(crate) struct Connections {
     sides: Vec<ConnectorSide>,
     number: FxHashMap<ConnectorSide, usize>,
     /// The set of each side, as a union-find forest.
@@ -67,7 +67,7 @@ impl Connections {
         at
     }
 
-    pub fn join(&mut self, one: ConnectorSide, other: ConnectorSide, span: Span) {
+    pub(crate) fn join(&mut self, one: ConnectorSide, other: ConnectorSide, span: Span) {
         let (one, other) = (self.side(one, span), self.side(other, span));
         let (one, other) = (self.shorten(one), self.shorten(other));
         // The earlier side represents the set.
@@ -84,7 +84,7 @@ impl Connections {
         at
     }
 
-    pub fn count(&mut self, end: End) {
+    pub(crate) fn count(&mut self, end: End) {
         *self.counts.entry(end).or_default() += 1;
     }
 
@@ -94,7 +94,7 @@ impl Connections {
     }
 
     /// All sides that are connected with a scalar, on either side.
-    pub fn around(&self, leaf: NodeId, element: usize) -> Vec<ConnectorSide> {
+    pub(crate) fn around(&self, leaf: NodeId, element: usize) -> Vec<ConnectorSide> {
         [false, true]
             .into_iter()
             .flat_map(|outside| self.set_of(ConnectorSide { leaf, element, outside }))
@@ -102,7 +102,7 @@ impl Connections {
     }
 
     /// Lists the members of the sets.
-    pub fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         for at in 0..self.parent.len() {
             self.parent[at] = self.find(at);
         }
@@ -114,7 +114,7 @@ impl Connections {
 
     /// The sets of two or more with a connection of each, without the variables of expandable
     /// connectors that are left out.
-    pub fn sets(&self) -> impl Iterator<Item = (Vec<ConnectorSide>, Span)> {
+    pub(crate) fn sets(&self) -> impl Iterator<Item = (Vec<ConnectorSide>, Span)> {
         let joined = self.members.iter().zip(&self.spans).filter(|(members, _)| members.len() > 1);
         joined.filter_map(|(members, span)| {
             let sides = members.iter().map(|at| self.sides[*at]);
@@ -125,7 +125,7 @@ impl Connections {
     }
 
     /// Whether a side is connected.
-    pub fn contains(&self, side: &ConnectorSide) -> bool {
+    pub(crate) fn contains(&self, side: &ConnectorSide) -> bool {
         self.number.contains_key(side)
     }
 

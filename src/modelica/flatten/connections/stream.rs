@@ -239,7 +239,7 @@ fn sum(so_far: Option<Expression>, term: Expression) -> Expression {
 }
 
 /// Values as an array of these sizes; a single one without dimensions.
-pub fn arranged(mut values: Vec<Expression>, dims: &[usize], span: Span) -> Expression {
+pub(crate) fn arranged(mut values: Vec<Expression>, dims: &[usize], span: Span) -> Expression {
     let Some((size, inner)) = dims.split_first() else {
         return match values.len() {
             1 => values.remove(0),

@@ -60,7 +60,7 @@ fn has_no_elements(e: &Expression) -> bool {
 
 impl Instantiation<'_> {
     /// `{element for i in range}`.
-    pub fn array_iteration(
+    pub(crate) fn array_iteration(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
@@ -86,7 +86,7 @@ impl Instantiation<'_> {
     }
 
     /// The arguments of a call, the element of a reduction among them.
-    pub fn arguments(
+    pub(crate) fn arguments(
         &mut self,
         arguments: &Arguments,
         context: ScopeId,
@@ -173,7 +173,7 @@ impl Instantiation<'_> {
     }
 
     /// The iterators, the outer one first, with resolved ranges, and what their body knows.
-    pub fn iterators(
+    pub(crate) fn iterators(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,

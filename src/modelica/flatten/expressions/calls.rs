@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// A call as an expression.
-    pub fn call(
+    pub(crate) fn call(
         &mut self,
         span: Span,
         function: &ComponentReference,

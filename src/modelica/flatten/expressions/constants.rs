@@ -111,7 +111,7 @@ impl Instantiation<'_> {
 
     /// Whether an expression has a value at translation: no variable but constants and
     /// parameters, no operator of time.
-    pub fn is_fixed(&mut self, resolved: &Expression) -> bool {
+    pub(crate) fn is_fixed(&mut self, resolved: &Expression) -> bool {
         let read = std::mem::take(&mut self.values.read);
         let fixed = self.known_flat_value(resolved).is_ok();
         self.values.read = read;
@@ -130,7 +130,7 @@ impl Instantiation<'_> {
     }
 
     /// The value of a constant or parameter, by its place.
-    pub fn value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
+    pub(crate) fn value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
         match self.values.known.get(&variable) {
             Some(Some((value, read))) => {
                 self.values.read.extend(read.iter().copied());
@@ -238,7 +238,7 @@ impl Instantiation<'_> {
     }
 
     /// A constant of a package, or a literal of an enumeration, as its value.
-    pub fn constant(
+    pub(crate) fn constant(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,

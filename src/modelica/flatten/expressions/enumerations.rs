@@ -124,7 +124,7 @@ impl Classes<'_> {
 
 impl Instantiation<'_> {
     /// `E(i)`, `Integer(e)` and `String(e)` of enumerations; `None` for any other call.
-    pub fn conversion(
+    pub(crate) fn conversion(
         &mut self,
         span: Span,
         function: &ComponentReference,

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 /// What the resolution of an expression knows besides its scope.
 #[derive(Clone, Default)]
-pub struct Local {
+pub(crate) struct Local {
     /// Loop variables and variables of a function, innermost last; those of an unrolled loop with
     /// their value.
     pub names: Vec<(Ident, Option<Expression>)>,
@@ -29,12 +29,12 @@ pub struct Local {
 
 impl Local {
     /// What a local name stands for, if there is one: its value where it has one.
-    pub fn get(&self, name: Ident) -> Option<&Option<Expression>> {
+    pub(crate) fn get(&self, name: Ident) -> Option<&Option<Expression>> {
         self.names.iter().rev().find(|(known, _)| *known == name).map(|(_, value)| value)
     }
 
     /// Whether a subscript needs a local name that has no value yet.
-    pub fn is_open(&self, subscript: &Subscript) -> bool {
+    pub(crate) fn is_open(&self, subscript: &Subscript) -> bool {
         match subscript {
             Subscript::Index(e) => self.is_open_in(e),
             Subscript::All(_) => false,
@@ -49,7 +49,7 @@ impl Local {
     }
 
     /// This with more names that stay as they are.
-    pub fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
+    pub(crate) fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
         let mut local = self.clone();
         local.names.extend(names.into_iter().map(|name| (name, None)));
         local

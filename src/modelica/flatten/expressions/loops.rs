@@ -211,7 +211,7 @@ impl Instantiation<'_> {
     }
 
     /// What the body of a loop knows in each of its iterations.
-    pub fn iterations(
+    pub(crate) fn iterations(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,

@@ -2,15 +2,15 @@
 //! constants of packages their values, calls of functions their full names.
 
 pub(crate) mod array_iterations;
-pub mod calls;
-pub mod constants;
-pub mod enumerations;
-pub mod local;
+pub(crate) mod calls;
+pub(crate) mod constants;
+pub(crate) mod enumerations;
+pub(crate) mod local;
 pub(crate) mod loops;
 pub(crate) mod overloaded_arrays;
 pub(crate) mod overloading;
-pub mod paths;
-pub mod resolve;
-pub mod state_machines;
-pub mod values;
+pub(crate) mod paths;
+pub(crate) mod resolve;
+pub(crate) mod state_machines;
+pub(crate) mod values;
 pub(crate) mod vectorization;

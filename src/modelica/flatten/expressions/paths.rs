@@ -29,7 +29,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// Follows a reference through the components of a node.
-    pub fn walk(
+    pub(crate) fn walk(
         &mut self,
         node: NodeId,
         parts: &[ReferencePart],
@@ -143,7 +143,7 @@ impl Instantiation<'_> {
 
     /// The elements of an array of components that subscripts choose: for every dimension the
     /// indices, and whether the dimension stays.
-    pub fn choose(
+    pub(crate) fn choose(
         &mut self,
         dims: &[usize],
         subscripts: &[Subscript],
@@ -407,7 +407,7 @@ impl Tree {
         self.declaration_of(node, name).is_some_and(|declaration| declaration.protected)
     }
 
-    pub fn component_names(&self, node: NodeId) -> Vec<Ident> {
+    pub(crate) fn component_names(&self, node: NodeId) -> Vec<Ident> {
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         members.map_or(Vec::new(), |members| members.keys().copied().collect())
     }

@@ -26,7 +26,7 @@ const MAX_DEPTH: usize = 400;
 
 impl Instantiation<'_> {
     /// The expression with its names resolved.
-    pub fn resolve(
+    pub(crate) fn resolve(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -281,7 +281,7 @@ impl Instantiation<'_> {
         }
     }
 
-    pub fn all(
+    pub(crate) fn all(
         &mut self,
         expressions: &[Expression],
         context: ScopeId,
@@ -305,7 +305,7 @@ impl Instantiation<'_> {
             .collect()
     }
 
-    pub fn subscripts(
+    pub(crate) fn subscripts(
         &mut self,
         subscripts: &[Subscript],
         context: ScopeId,
@@ -327,7 +327,7 @@ impl Instantiation<'_> {
     }
 
     /// A reference as an expression: `time`, a loop variable, a component or a constant.
-    pub fn reference(
+    pub(crate) fn reference(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,
@@ -377,7 +377,11 @@ impl Instantiation<'_> {
 
 impl Classes<'_> {
     /// The diagnostic for a name that is neither a component nor a constant.
-    pub fn unknown_name(&self, reference: &ComponentReference, context: ScopeId) -> Diagnostic {
+    pub(crate) fn unknown_name(
+        &self,
+        reference: &ComponentReference,
+        context: ScopeId,
+    ) -> Diagnostic {
         let known = self.tree.component_names(self.node_of(context));
         unknown::name(&reference.name(), &known, reference.span)
     }

@@ -7,11 +7,11 @@ use indexmap::IndexSet;
 use rustc_hash::FxHashMap;
 
 /// Variables read while a value is found.
-pub type Read = IndexSet<usize>;
+pub(crate) type Read = IndexSet<usize>;
 
 /// The values of constants and parameters that are known at translation.
 #[derive(Debug, Default)]
-pub struct Values {
+pub(crate) struct Values {
     /// Structural parameters: variables whose values determine the equations.
     pub structural: IndexSet<usize>,
     /// Variables whose values were drawn at random.

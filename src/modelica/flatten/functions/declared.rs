@@ -36,7 +36,7 @@ use std::sync::Arc;
 const INTRINSIC_PACKAGES: &[&str] = &["Modelica.Math"];
 
 /// Whether a name with dots is one of a function that the language has under its bare name too.
-pub fn is_intrinsic(name: &Name) -> bool {
+pub(crate) fn is_intrinsic(name: &Name) -> bool {
     let package = Name::new(name.parent().parts).to_string();
     INTRINSIC_PACKAGES.contains(&package.as_str())
 }
@@ -140,7 +140,7 @@ impl Instantiation<'_> {
     }
 
     /// Makes a function ready and returns its full name; `None` if the class is not a function.
-    pub fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
+    pub(crate) fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
         if let Some(known) = self.functions.names.get(&id) {
             return Ok(Some(known.clone()));
         }
@@ -619,7 +619,7 @@ impl Instantiation<'_> {
     }
 
     /// Statements with their names resolved.
-    pub fn statements(
+    pub(crate) fn statements(
         &mut self,
         statements: &[Statement],
         context: ScopeId,

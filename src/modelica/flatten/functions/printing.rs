@@ -8,7 +8,7 @@ use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind, Externa
 use std::sync::Arc;
 
 /// Its name.
-pub const PRINT: &str = "print";
+pub(crate) const PRINT: &str = "print";
 
 /// Its input.
 const TEXT: &str = "string";

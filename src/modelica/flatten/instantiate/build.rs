@@ -22,7 +22,11 @@ use crate::value::Value;
 
 impl Instantiation<'_> {
     /// The component of a node, built now if it was not; `None` if there is none of that name.
-    pub fn member(&mut self, node: NodeId, name: Ident) -> Result<Option<MemberState>, Diagnostic> {
+    pub(crate) fn member(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+    ) -> Result<Option<MemberState>, Diagnostic> {
         self.classes.fill(node)?;
         let members =
             self.classes.tree.composite_of(node).and_then(|composite| composite.members.as_ref());
@@ -80,7 +84,7 @@ impl Instantiation<'_> {
         self.built(node, declared)
     }
 
-    pub fn built(
+    pub(crate) fn built(
         &mut self,
         node: NodeId,
         declared: &Declaration,
@@ -113,7 +117,7 @@ impl Instantiation<'_> {
     }
 
     /// The sizes of a component, those of its type included.
-    pub fn dimensions(
+    pub(crate) fn dimensions(
         &mut self,
         declared: &Declaration,
         expanded: &Expanded,
@@ -194,7 +198,7 @@ impl Instantiation<'_> {
     }
 
     /// Builds all components below a node.
-    pub fn complete(&mut self, node: NodeId) -> Result<(), Vec<Diagnostic>> {
+    pub(crate) fn complete(&mut self, node: NodeId) -> Result<(), Vec<Diagnostic>> {
         let mut errors = Vec::new();
         let mut at = 0;
         // An `outer` component without an `inner` one adds a component to the model itself.

@@ -29,7 +29,11 @@ const MAX_SELF: usize = 20;
 
 impl Classes<'_> {
     /// The instance of the model itself, under a modifier.
-    pub fn model(&mut self, class: ScopeId, modifier: Modifier) -> Result<NodeId, Diagnostic> {
+    pub(crate) fn model(
+        &mut self,
+        class: ScopeId,
+        modifier: Modifier,
+    ) -> Result<NodeId, Diagnostic> {
         let text = self.text(class);
         let modifier = self
             .scope(class)
@@ -102,7 +106,7 @@ impl Classes<'_> {
     }
 
     /// Lists the components of an instance, as far as they are not listed yet.
-    pub fn fill(&mut self, node: NodeId) -> Result<(), Diagnostic> {
+    pub(crate) fn fill(&mut self, node: NodeId) -> Result<(), Diagnostic> {
         let Some(composite) = self.tree.composite_of(node) else { return Ok(()) };
         if composite.members.is_some() {
             return Ok(());
@@ -125,12 +129,12 @@ impl Classes<'_> {
         Ok(())
     }
 
-    pub fn is_record(&self, scope: ScopeId) -> bool {
+    pub(crate) fn is_record(&self, scope: ScopeId) -> bool {
         matches!(self.text(scope).restriction(), Restriction::Record | Restriction::OperatorRecord)
     }
 
     /// The instances with components at a node and below it, the inner ones first.
-    pub fn instances(&mut self, node: NodeId) -> Result<Vec<NodeId>, Diagnostic> {
+    pub(crate) fn instances(&mut self, node: NodeId) -> Result<Vec<NodeId>, Diagnostic> {
         let mut found = Vec::new();
         self.collect_instances(node, &mut found)?;
         Ok(found)
@@ -160,7 +164,10 @@ impl Classes<'_> {
     }
 
     /// The components of an instance, with their states.
-    pub fn members(&mut self, node: NodeId) -> Result<Vec<(Ident, MemberState)>, Diagnostic> {
+    pub(crate) fn members(
+        &mut self,
+        node: NodeId,
+    ) -> Result<Vec<(Ident, MemberState)>, Diagnostic> {
         self.fill(node)?;
         let members = self.tree.composite_of(node).and_then(|composite| composite.members.as_ref());
         Ok(members.map_or(Vec::new(), |members| {
@@ -208,7 +215,7 @@ impl Classes<'_> {
         Ok(())
     }
 
-    pub fn components(
+    pub(crate) fn components(
         &mut self,
         node: NodeId,
         declared: &Declaration,

@@ -28,7 +28,7 @@ const SURELY: usize = 1_000_000_000;
 
 /// The components that are being completed, outermost first.
 #[derive(Debug, Default)]
-pub struct Growth {
+pub(crate) struct Growth {
     levels: Vec<Level>,
     /// How many components there were at the last estimate.
     estimated: usize,
@@ -57,18 +57,18 @@ struct Expected {
 
 impl Growth {
     /// A component begins to be completed.
-    pub fn enter(&mut self, holder: NodeId, member: usize, elements: usize, before: usize) {
+    pub(crate) fn enter(&mut self, holder: NodeId, member: usize, elements: usize, before: usize) {
         self.levels.push(Level { holder, member, elements, before });
     }
 
     /// It is complete.
-    pub fn leave(&mut self) {
+    pub(crate) fn leave(&mut self) {
         self.levels.pop();
     }
 
     /// An error if the components that are being completed lead to more than a model may have.
     /// Asked after the completion of each, it is answered whenever their number has doubled.
-    pub fn check(&mut self, classes: &mut Classes<'_>) -> Result<(), Diagnostic> {
+    pub(crate) fn check(&mut self, classes: &mut Classes<'_>) -> Result<(), Diagnostic> {
         let count = classes.tree.nodes.len();
         if count < UNSUSPICIOUS.max(2 * self.estimated) {
             return Ok(());

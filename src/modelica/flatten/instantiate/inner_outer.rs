@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// What an outer component of an instance means.
-    pub fn outer(
+    pub(crate) fn outer(
         &mut self,
         node: NodeId,
         declared: &Declaration,

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// An instance: of a class with components, or of a predefined type.
 #[derive(Debug, Clone)]
-pub struct Node {
+pub(crate) struct Node {
     /// The path from the model, such as `pack.cell[2]`; empty for the model itself.
     pub path: String,
     /// The instance that holds it.
@@ -49,7 +49,7 @@ pub(crate) struct Composite {
 
 /// What components inherit from the one that holds them.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Inherited {
+pub(crate) struct Inherited {
     pub variability: Option<Variability>,
     pub causality: Option<CausalityPrefix>,
     pub connection: Option<ConnectionPrefix>,
@@ -60,7 +60,7 @@ pub struct Inherited {
 
 /// A component of a class.
 #[derive(Debug, Clone)]
-pub struct Member {
+pub(crate) struct Member {
     pub declaration: Arc<Declaration>,
     pub state: MemberState,
 }
@@ -88,7 +88,7 @@ pub(crate) enum MemberState {
 
 impl MemberState {
     /// What belongs to the instance that holds the component.
-    pub fn own(self) -> MemberState {
+    pub(crate) fn own(self) -> MemberState {
         match self {
             MemberState::Outer(_) => MemberState::Absent,
             MemberState::Both { inner, .. } => *inner,
@@ -97,7 +97,7 @@ impl MemberState {
     }
 
     /// What the name of the component means in its class.
-    pub fn seen(self) -> MemberState {
+    pub(crate) fn seen(self) -> MemberState {
         match self {
             MemberState::Outer(state) | MemberState::Both { outer: state, .. } => *state,
             state => state,
@@ -107,7 +107,7 @@ impl MemberState {
 
 /// The declaration of a component with its modifiers merged.
 #[derive(Debug, Clone)]
-pub struct Declaration {
+pub(crate) struct Declaration {
     pub name: Ident,
     pub type_specifier: TypeSpecifier,
     /// Where its type is looked up.
@@ -129,7 +129,7 @@ pub struct Declaration {
 
 /// What a component is made of.
 #[derive(Debug, Clone)]
-pub enum Shape {
+pub(crate) enum Shape {
     Predefined(Predefined),
     Enumeration(Arc<EnumerationDefinition>),
     Class(ScopeId),
@@ -172,7 +172,7 @@ pub(crate) struct Leaf {
 
 impl Shape {
     /// The predefined type of a variable of this shape; `None` for a class.
-    pub fn base(&self) -> Option<BaseType> {
+    pub(crate) fn base(&self) -> Option<BaseType> {
         Some(match self {
             Shape::Predefined(Predefined::Real) => BaseType::Real,
             Shape::Predefined(Predefined::Integer) => BaseType::Integer,

@@ -32,7 +32,7 @@ pub(crate) struct Instantiation<'a> {
 
 impl<'a> Instantiation<'a> {
     /// A tree with the instance of the top scope alone.
-    pub fn new(library: &'a Library) -> Instantiation<'a> {
+    pub(crate) fn new(library: &'a Library) -> Instantiation<'a> {
         Instantiation {
             classes: Classes::new(library),
             functions: FunctionTable::default(),
@@ -49,7 +49,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The types of resolved expressions.
-    pub fn types(&self) -> Types<'_> {
+    pub(crate) fn types(&self) -> Types<'_> {
         Types { tree: &self.classes.tree, functions: &self.functions }
     }
 }

@@ -28,7 +28,7 @@ pub(crate) const MAX_INSTANCES: usize = 1_000_000;
 const PACKAGE_MARK: char = '.';
 
 /// The growing tree.
-pub struct Tree {
+pub(crate) struct Tree {
     pub nodes: Vec<Node>,
     /// Variables with the node of each.
     pub variables: Vec<(Variable, NodeId)>,
@@ -44,7 +44,7 @@ pub struct Tree {
 
 impl Tree {
     /// Whether an instance or a variable is a connector.
-    pub fn is_connector(&self, node: NodeId) -> bool {
+    pub(crate) fn is_connector(&self, node: NodeId) -> bool {
         match &self.nodes[node.0].kind {
             NodeKind::Composite(composite) => composite.connector,
             NodeKind::Variable(leaf) => leaf.connector,
@@ -52,7 +52,7 @@ impl Tree {
     }
 
     /// The node 0 alone, which has no components: the instance of the top scope.
-    pub fn new() -> Tree {
+    pub(crate) fn new() -> Tree {
         let nowhere = Composite {
             scope: ScopeId::TOP,
             class: ScopeId::TOP,
@@ -145,12 +145,12 @@ impl Tree {
         }
     }
 
-    pub fn path_of(&self, node: NodeId, name: Ident) -> String {
+    pub(crate) fn path_of(&self, node: NodeId, name: Ident) -> String {
         let parent = &self.nodes[node.0].path;
         if parent.is_empty() { name.to_string() } else { format!("{parent}.{name}") }
     }
 
-    pub fn count(&mut self, scalars: usize, span: Span) -> Result<(), Diagnostic> {
+    pub(crate) fn count(&mut self, scalars: usize, span: Span) -> Result<(), Diagnostic> {
         self.scalars = self.scalars.saturating_add(scalars.max(1));
         if self.scalars > MAX_SCALARS {
             return Err(fault!(
@@ -187,7 +187,7 @@ impl Tree {
     }
 
     /// Adds a variable below a node.
-    pub fn variable(
+    pub(crate) fn variable(
         &mut self,
         node: NodeId,
         declared: &Declaration,
@@ -244,7 +244,7 @@ impl Tree {
     }
 
     /// Whether a node lies in the instance of a package, whose paths begin with its full name.
-    pub fn in_package(&self, node: NodeId) -> bool {
+    pub(crate) fn in_package(&self, node: NodeId) -> bool {
         self.nodes[node.0].path.starts_with(PACKAGE_MARK)
     }
 

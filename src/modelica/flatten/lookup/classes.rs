@@ -22,7 +22,7 @@ const MAX_SCOPES: usize = 1_000_000;
 
 /// Classes in their enclosing scopes. Every class has a node in the instance tree, whose components
 /// its names mean: the nodes of packages hold their constants.
-pub struct Classes<'a> {
+pub(crate) struct Classes<'a> {
     pub library: &'a Library,
     pub tree: Tree,
     /// Classes in their enclosing scopes; the first is the top.
@@ -38,7 +38,7 @@ pub struct Classes<'a> {
 
 impl<'a> Classes<'a> {
     /// The top scope alone, with the node 0 as its instance.
-    pub fn new(library: &'a Library) -> Classes<'a> {
+    pub(crate) fn new(library: &'a Library) -> Classes<'a> {
         Classes {
             library,
             tree: Tree::new(),
@@ -53,12 +53,12 @@ impl<'a> Classes<'a> {
 }
 
 impl Classes<'_> {
-    pub fn scope(&self, id: ScopeId) -> &Scope {
+    pub(crate) fn scope(&self, id: ScopeId) -> &Scope {
         &self.scopes[id.0 as usize]
     }
 
     /// The text of a scope; that of the top is not asked for.
-    pub fn text(&self, id: ScopeId) -> &Text {
+    pub(crate) fn text(&self, id: ScopeId) -> &Text {
         self.scope(id).text.as_ref().expect("only the top scope has no text")
     }
 

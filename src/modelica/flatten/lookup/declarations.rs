@@ -350,7 +350,7 @@ fn redeclared(
 
 /// The Boolean value of an annotation of a declaration or a short class, such as `Evaluate`
 /// (MLS §18.3).
-pub fn annotated(comment: &Comment, name: &str) -> Option<bool> {
+pub(crate) fn annotated(comment: &Comment, name: &str) -> Option<bool> {
     let value = |argument: &ast::Argument| {
         let ast::Argument::Element(element) = argument else { return None };
         let binding = element.modification.as_ref()?.binding.as_ref()?;

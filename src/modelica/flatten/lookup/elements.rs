@@ -19,7 +19,7 @@ pub(crate) const MAX_BASES: usize = 10_000;
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]
-pub struct Elements {
+pub(crate) struct Elements {
     /// What the first base class gives.
     shared: Option<Rc<Elements>>,
     parts: usize,
@@ -47,44 +47,44 @@ impl Elements {
     }
 
     /// Whether it has no components and comes from no class.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.shared.is_none() && self.components.is_empty() && self.lineage.is_empty()
     }
 
     /// The declaration of a component.
-    pub fn get(&self, name: Ident) -> Option<&Arc<Declaration>> {
+    pub(crate) fn get(&self, name: Ident) -> Option<&Arc<Declaration>> {
         let parts = std::iter::successors(Some(self), |part| part.shared.as_deref());
         parts.into_iter().find_map(|part| part.components.get(&name))
     }
 
     /// Whether there is a component of a name.
-    pub fn contains(&self, name: Ident) -> bool {
+    pub(crate) fn contains(&self, name: Ident) -> bool {
         self.get(name).is_some()
     }
 
     /// The components in order, inherited ones first.
-    pub fn iter(&self) -> impl Iterator<Item = (Ident, &Arc<Declaration>)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (Ident, &Arc<Declaration>)> {
         let components = self.parts().into_iter().flat_map(|part| &part.components);
         components.map(|(name, declaration)| (*name, declaration))
     }
 
     /// Their names.
-    pub fn names(&self) -> impl Iterator<Item = Ident> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = Ident> {
         self.iter().map(|(name, _)| name)
     }
 
     /// The classes that equations come from, bases first, the class itself last.
-    pub fn lineage(&self) -> impl Iterator<Item = ScopeId> {
+    pub(crate) fn lineage(&self) -> impl Iterator<Item = ScopeId> {
         self.parts().into_iter().flat_map(|part| part.lineage.iter().copied())
     }
 
     /// How many classes equations come from.
-    pub fn bases(&self) -> usize {
+    pub(crate) fn bases(&self) -> usize {
         self.bases
     }
 
     /// Adds a component that is not there yet.
-    pub fn add(&mut self, declaration: Arc<Declaration>) {
+    pub(crate) fn add(&mut self, declaration: Arc<Declaration>) {
         self.components.insert(declaration.name, declaration);
     }
 

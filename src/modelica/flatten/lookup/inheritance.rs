@@ -22,7 +22,7 @@ use std::rc::Rc;
 impl Classes<'_> {
     /// What a nested class is here: a scope of its own, or that of the class that it is another
     /// name of.
-    pub fn instance(&mut self, nested: &Rc<Nested>) -> Result<Type, Diagnostic> {
+    pub(crate) fn instance(&mut self, nested: &Rc<Nested>) -> Result<Type, Diagnostic> {
         if let Some(known) = nested.instance.get() {
             return Ok(known);
         }
@@ -81,7 +81,7 @@ impl Classes<'_> {
     /// The base classes of a scope in the order of its extends clauses, each as a scope of its
     /// own; none while they are being looked up, for names that a base class itself needs
     /// (MLS §5.6.1.4).
-    pub fn bases(&mut self, id: ScopeId) -> Result<Rc<[ScopeId]>, Diagnostic> {
+    pub(crate) fn bases(&mut self, id: ScopeId) -> Result<Rc<[ScopeId]>, Diagnostic> {
         match &self.scope(id).bases {
             Stage::Done(bases) => return Ok(bases.clone()),
             Stage::Busy => return Ok(Rc::new([])),
@@ -238,7 +238,7 @@ impl Classes<'_> {
     }
 
     /// The components of a class, inherited ones included.
-    pub fn elements(&mut self, id: ScopeId) -> Result<Rc<Elements>, Diagnostic> {
+    pub(crate) fn elements(&mut self, id: ScopeId) -> Result<Rc<Elements>, Diagnostic> {
         match &self.scope(id).elements {
             Stage::Done(elements) => return Ok(elements.clone()),
             Stage::Failed(error) => return Err((**error).clone()),

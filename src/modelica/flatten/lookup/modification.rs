@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// All that modifies one element, merged.
 #[derive(Debug, Clone, Default)]
-pub struct Modifier {
+pub(crate) struct Modifier {
     /// The value after `=`, with the scope that it was written in.
     pub binding: Option<Bound>,
     /// Modifiers of the element's own elements or attributes.
@@ -36,7 +36,7 @@ pub struct Modifier {
 
 /// What an element is redeclared as.
 #[derive(Debug, Clone)]
-pub struct Redeclaration {
+pub(crate) struct Redeclaration {
     pub replacement: Replacement,
     /// The scope that it was written in.
     pub context: ScopeId,
@@ -60,7 +60,7 @@ pub(crate) enum Replacement {
 
 /// A value with the scope that it was written in.
 #[derive(Debug, Clone)]
-pub struct Bound {
+pub(crate) struct Bound {
     /// The value; `None` for `= break`, which removes an inner one (MLS §7.2.7).
     pub value: Option<Expression>,
     pub context: ScopeId,
@@ -78,7 +78,7 @@ pub struct Bound {
 
 impl Modifier {
     /// The modifier that a declaration's or an argument's modification writes.
-    pub fn new(
+    pub(crate) fn new(
         modification: Option<&Modification>,
         each: usize,
         context: ScopeId,
@@ -97,7 +97,10 @@ impl Modifier {
     }
 
     /// The modifier in parentheses.
-    pub fn of_arguments(arguments: &[Argument], context: ScopeId) -> Result<Modifier, Diagnostic> {
+    pub(crate) fn of_arguments(
+        arguments: &[Argument],
+        context: ScopeId,
+    ) -> Result<Modifier, Diagnostic> {
         Modifier::of_each(arguments, 0, context)
     }
 
@@ -198,14 +201,14 @@ impl Modifier {
     }
 
     /// Adds a redeclaration of a class.
-    pub fn redeclare(&mut self, name: Ident, redeclaration: Redeclaration, span: Span) {
+    pub(crate) fn redeclare(&mut self, name: Ident, redeclaration: Redeclaration, span: Span) {
         let entry = self.elements.entry(name).or_default();
         entry.redeclaration = Some(redeclaration);
         entry.span = Some(span);
     }
 
     /// Whether both are written alike, wherever they stand.
-    pub fn is_same(&self, other: &Modifier) -> bool {
+    pub(crate) fn is_same(&self, other: &Modifier) -> bool {
         let elements = || {
             self.elements.iter().all(|(name, modifier)| {
                 other.elements.get(name).is_some_and(|other| modifier.is_same(other))
@@ -232,7 +235,7 @@ impl Modifier {
     }
 
     /// Whether it changes nothing.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         let has_parts = !self.elements.is_empty() || !self.of_elements.is_empty();
         self.binding.is_none() && !has_parts && self.redeclaration.is_none()
     }
@@ -299,7 +302,7 @@ impl Modifier {
 
     /// The same as a part of the class that it modifies.
     #[must_use]
-    pub fn of_class(mut self) -> Modifier {
+    pub(crate) fn of_class(mut self) -> Modifier {
         self.mark_of_class();
         self
     }
@@ -329,7 +332,7 @@ impl Modifier {
     }
 
     /// The value that it gives to its element, or to an attribute of it.
-    pub fn value_of(&self, attribute: Option<&str>) -> Option<&Bound> {
+    pub(crate) fn value_of(&self, attribute: Option<&str>) -> Option<&Bound> {
         match attribute {
             None => self.binding.as_ref(),
             Some(attribute) => {
@@ -400,7 +403,7 @@ impl Redeclaration {
     }
 
     /// A redeclaration of an element that nothing else modifies.
-    pub fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
+    pub(crate) fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
         Redeclaration { replacement, context, over: None, plain: Box::default() }
     }
 

@@ -69,7 +69,11 @@ impl Classes<'_> {
     }
 
     /// What a name means as a class in a scope.
-    pub fn lookup(&mut self, scope: ScopeId, name: &Name) -> Result<Option<Type>, Diagnostic> {
+    pub(crate) fn lookup(
+        &mut self,
+        scope: ScopeId,
+        name: &Name,
+    ) -> Result<Option<Type>, Diagnostic> {
         let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
         let predefined = Predefined::named(*first).filter(|_| rest.is_empty());
         if let Some(reserved) = predefined.filter(|predefined| predefined.is_reserved()) {
@@ -120,7 +124,7 @@ impl Classes<'_> {
     }
 
     /// A class that another declares or inherits, with what replaces it.
-    pub fn find_class(
+    pub(crate) fn find_class(
         &mut self,
         scope: ScopeId,
         name: Ident,
@@ -292,7 +296,7 @@ impl Classes<'_> {
     }
 
     /// A class at the top level.
-    pub fn root(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
+    pub(crate) fn root(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
         if let Some(known) = self.roots.get(&name) {
             return self.instance(&known.clone()).map(Some);
         }

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// The text of a class.
 #[derive(Debug, Clone)]
-pub struct Text {
+pub(crate) struct Text {
     /// Full name, for messages and as the name of functions and records.
     pub name: Name,
     pub definition: Arc<ClassDefinition>,
@@ -30,16 +30,16 @@ pub struct Text {
 }
 
 impl Text {
-    pub fn restriction(&self) -> Restriction {
+    pub(crate) fn restriction(&self) -> Restriction {
         self.definition.restriction
     }
 
-    pub fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         self.definition.name.span
     }
 
     /// The sections of a long class; none for a short one.
-    pub fn sections(&self) -> &[Section] {
+    pub(crate) fn sections(&self) -> &[Section] {
         match &self.definition.specifier {
             ClassSpecifier::Long(long) => &long.sections,
             _ => &[],
@@ -47,7 +47,7 @@ impl Text {
     }
 
     /// The elements with whether they are protected, in order.
-    pub fn elements(&self) -> impl Iterator<Item = (bool, &Element)> {
+    pub(crate) fn elements(&self) -> impl Iterator<Item = (bool, &Element)> {
         self.sections().iter().flat_map(|section| {
             let (protected, elements) = match section {
                 Section::Elements { visibility, elements } => {
@@ -62,7 +62,7 @@ impl Text {
 
 /// A class declared in another, with all that replaces or modifies it there.
 #[derive(Debug)]
-pub struct Nested {
+pub(crate) struct Nested {
     pub text: Text,
     /// The scope in which its text stands.
     pub parent: ScopeId,
@@ -77,7 +77,7 @@ pub struct Nested {
 
 /// A class in its enclosing scope.
 #[derive(Debug)]
-pub struct Scope {
+pub(crate) struct Scope {
     pub text: Option<Text>,
     /// The scope in which the text stands; `None` for the top.
     pub parent: Option<ScopeId>,
@@ -96,7 +96,7 @@ pub struct Scope {
 
 /// What is found out at most once.
 #[derive(Debug, Clone, Default)]
-pub enum Stage<T> {
+pub(crate) enum Stage<T> {
     #[default]
     Pending,
     Busy,

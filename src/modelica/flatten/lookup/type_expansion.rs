@@ -30,7 +30,7 @@ enum Step {
 impl Classes<'_> {
     /// Follows the short classes of a component's type down to what it is made of, collecting
     /// modifiers (outer over inner) and dimensions.
-    pub fn expand(&mut self, declared: &Declaration) -> Result<Expanded, Diagnostic> {
+    pub(crate) fn expand(&mut self, declared: &Declaration) -> Result<Expanded, Diagnostic> {
         let found = self.lookup_type(declared.scope, &declared.type_specifier)?;
         self.expand_type(found, &declared.type_specifier, declared.modifier.clone())
     }
@@ -201,7 +201,7 @@ impl Classes<'_> {
     }
 
     /// The enumeration that a type is, through short classes; `None` if it is anything else.
-    pub fn enumeration(
+    pub(crate) fn enumeration(
         &mut self,
         found: Type,
         span: Span,

@@ -5,7 +5,7 @@ use crate::name::Ident;
 
 /// What the name of a type means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Type {
+pub(crate) enum Type {
     /// A class in its enclosing scope.
     Class(ScopeId),
     /// A predefined type (MLS §4.9).
@@ -14,7 +14,7 @@ pub enum Type {
 
 /// The predefined types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Predefined {
+pub(crate) enum Predefined {
     Real,
     Integer,
     Boolean,
@@ -30,7 +30,7 @@ pub enum Predefined {
 }
 
 impl Predefined {
-    pub fn named(name: Ident) -> Option<Predefined> {
+    pub(crate) fn named(name: Ident) -> Option<Predefined> {
         match name.as_str() {
             "Real" => Some(Predefined::Real),
             "Integer" => Some(Predefined::Integer),

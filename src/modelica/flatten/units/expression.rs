@@ -13,7 +13,7 @@ use crate::units::Dimension;
 const SECOND: Dimension = Dimension::new([0, 0, 1, 0, 0, 0, 0, 0]);
 
 /// What an operator compares, as messages call it; `None` if its operands may differ.
-pub fn compared(operator: BinaryOperator) -> Option<&'static str> {
+pub(crate) fn compared(operator: BinaryOperator) -> Option<&'static str> {
     use BinaryOperator as B;
     match operator {
         B::Add | B::Subtract | B::ElementwiseAdd | B::ElementwiseSubtract => {

@@ -222,7 +222,7 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// Element by element; a scalar goes with every element.
-    pub(super) fn elementwise(
+    fn elementwise(
         &mut self,
         op: Binary,
         a: Array<T::Scalar>,

@@ -146,7 +146,7 @@ pub(crate) fn field_of<S: Copy>(
 }
 
 /// Arrays of one size as the elements of an array with one more dimension.
-pub(super) fn stack<S: Copy>(arrays: Vec<Array<S>>, span: Span) -> Result<Array<S>, Diagnostic> {
+fn stack<S: Copy>(arrays: Vec<Array<S>>, span: Span) -> Result<Array<S>, Diagnostic> {
     let mut dims = vec![arrays.len()];
     let Some(first) = arrays.first() else {
         return Ok(Array { dims, elements: Vec::new() });

@@ -10,7 +10,7 @@ use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
 /// The external name of a function.
-pub(super) fn external_name(function: &Function, clause: &ast::External) -> String {
+fn external_name(function: &Function, clause: &ast::External) -> String {
     c_function::external_name(function, clause).to_string()
 }
 

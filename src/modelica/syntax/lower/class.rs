@@ -331,7 +331,7 @@ fn exclusion(mut inside: Nodes<'_>) -> Lowered<Exclusion> {
 }
 
 /// The constraining clause that comes next, if one does.
-pub(super) fn constraint(nodes: &mut Nodes<'_>) -> Lowered<Option<Constraint>> {
+fn constraint(nodes: &mut Nodes<'_>) -> Lowered<Option<Constraint>> {
     let Some(mut inside) = nodes.try_enter(Rule::constraining_clause) else { return Ok(None) };
     Ok(Some(Constraint {
         target: type_specifier(&mut inside),
@@ -365,16 +365,14 @@ pub(super) fn component_clause(
 }
 
 /// Prefixes, type and dimensions.
-pub(super) fn clause_head(
-    parts: &mut Nodes<'_>,
-) -> Lowered<(TypePrefixes, TypeSpecifier, Vec<Subscript>)> {
+fn clause_head(parts: &mut Nodes<'_>) -> Lowered<(TypePrefixes, TypeSpecifier, Vec<Subscript>)> {
     let prefixes = type_prefixes(parts)?;
     let specifier = type_specifier(parts);
     Ok((prefixes, specifier, expression::optional_subscripts(parts)?))
 }
 
 /// The inside of a component declaration.
-pub(super) fn component_declaration(mut parts: Nodes<'_>) -> Lowered<ComponentDeclaration> {
+fn component_declaration(mut parts: Nodes<'_>) -> Lowered<ComponentDeclaration> {
     let name = ident(&mut parts);
     let subscripts = expression::optional_subscripts(&mut parts)?;
     let modification = modification(&mut parts)?;
@@ -395,7 +393,7 @@ pub(super) fn type_specifier(nodes: &mut Nodes<'_>) -> TypeSpecifier {
 }
 
 /// The type prefixes that come next, in any order, each kind once.
-pub(super) fn type_prefixes(nodes: &mut Nodes<'_>) -> Lowered<TypePrefixes> {
+fn type_prefixes(nodes: &mut Nodes<'_>) -> Lowered<TypePrefixes> {
     let mut prefixes = TypePrefixes::default();
     while let Some(word) = nodes.take(Rule::type_prefix) {
         let earlier = match word.as_str() {
@@ -421,7 +419,7 @@ pub(super) fn type_prefixes(nodes: &mut Nodes<'_>) -> Lowered<TypePrefixes> {
 }
 
 /// Adds the element prefix that comes next; whether one does.
-pub(super) fn element_prefix(nodes: &mut Nodes<'_>, prefixes: &mut ElementPrefixes) -> bool {
+fn element_prefix(nodes: &mut Nodes<'_>, prefixes: &mut ElementPrefixes) -> bool {
     let flag = match nodes.peek() {
         Some(Rule::kw_redeclare) => &mut prefixes.redeclare,
         Some(Rule::kw_final) => &mut prefixes.is_final,
@@ -436,7 +434,7 @@ pub(super) fn element_prefix(nodes: &mut Nodes<'_>, prefixes: &mut ElementPrefix
 }
 
 /// The modification that comes next, if one does.
-pub(super) fn modification(nodes: &mut Nodes<'_>) -> Lowered<Option<Modification>> {
+fn modification(nodes: &mut Nodes<'_>) -> Lowered<Option<Modification>> {
     let Some(mut parts) = nodes.try_enter(Rule::modification) else { return Ok(None) };
     let arguments = class_modification(&mut parts)?;
     let binding = match parts.take(Rule::kw_break) {

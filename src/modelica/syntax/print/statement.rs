@@ -42,7 +42,7 @@ impl Printer {
         self.comment(&equation.comment);
     }
 
-    pub(super) fn equation_line(&mut self, equation: &Equation) {
+    fn equation_line(&mut self, equation: &Equation) {
         self.equation(equation);
         self.word(";");
     }
@@ -90,7 +90,7 @@ impl Printer {
         self.comment(&statement.comment);
     }
 
-    pub(super) fn statement_line(&mut self, statement: &Statement) {
+    fn statement_line(&mut self, statement: &Statement) {
         self.statement(statement);
         self.word(";");
     }

@@ -22,7 +22,7 @@ use std::ops::Range;
 use tokens::{CommandPlace, Token, TokenKind, Tokens};
 
 /// Stands for a line end that closes a statement of a script.
-pub(super) const LINE_END: u8 = 0x1e;
+const LINE_END: u8 = 0x1e;
 
 /// Brackets and blocks inside each other that are still read.
 const MAX_NESTING: usize = 200;

@@ -17,7 +17,7 @@ pub(crate) fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Faul
     added(".+", left, right)
 }
 
-pub fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     if left.is_text() && right.is_text() {
         return join(left, right);
     }
@@ -42,7 +42,7 @@ pub(crate) fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value,
     multiplied(".*", left, right)
 }
 
-pub fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(symbol, left, right, real_multiply, |a, b| {
         a.checked_mul(b).ok_or_else(|| overflow("*", a, b))
     })
@@ -53,7 +53,7 @@ pub(crate) fn elementwise_divide(left: &Value, right: &Value) -> Result<Value, F
     divided("./", left, right)
 }
 
-pub fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     real(symbol, left, right, real_divide)
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn elementwise_power(left: &Value, right: &Value) -> Result<Value, Fa
 }
 
 /// Applies `on_reals`, or `on_integers` where both sides are Integer.
-pub fn numeric(
+pub(crate) fn numeric(
     symbol: &str,
     left: &Value,
     right: &Value,

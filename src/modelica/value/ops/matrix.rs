@@ -28,7 +28,7 @@ pub(crate) fn product_sizes<S: Copy>(a: &[S], b: &[S]) -> Option<((S, S), Vec<S>
 
 /// `a * b`: vector · vector is a scalar, matrix · vector and vector · matrix are vectors,
 /// matrix · matrix is a matrix.
-pub fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
+pub(crate) fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
     let sizes = product_sizes(&a.dims, &b.dims).filter(|((inner, other), _)| inner == other);
     let ((inner, _), dims) = sizes.ok_or_else(|| no_product(a, b))?;
     let rows = a.dims[..a.dims.len() - 1].iter().product();
@@ -58,7 +58,7 @@ pub fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
 }
 
 /// `a ^ n` by repeated squaring; `n = 0` gives the identity.
-pub fn power(base: &ArrayValue, exponent: i64) -> Result<Value, Fault> {
+pub(crate) fn power(base: &ArrayValue, exponent: i64) -> Result<Value, Fault> {
     let size = match base.dims.as_slice() {
         [n, m] if n == m => *n,
         _ => bail!(

@@ -43,7 +43,7 @@ pub(crate) fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
     representable("^", a, b, elementary::powf(a, b))
 }
 
-pub fn overflow(symbol: &str, a: i64, b: i64) -> Fault {
+pub(crate) fn overflow(symbol: &str, a: i64, b: i64) -> Fault {
     fault!(INTEGER_OVERFLOW, "{a} {symbol} {b} does not fit in an Integer";
         help: "write one operand as a Real, such as `{a}.0`")
 }

@@ -10,7 +10,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "arithmetic",
     aliases: &["intermediate"],
     summary: "arithmetic crossover: children at random on the line between their parents",

@@ -10,7 +10,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "blend",
     aliases: &["blx", "blx_alpha"],
     summary: "BLX-alpha: genes uniform between the parents, extended by `alpha` times their \

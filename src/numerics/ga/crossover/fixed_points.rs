@@ -17,7 +17,7 @@ use crate::registry::Entry;
 use std::sync::Arc;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "fixed_points",
     aliases: &["gapilib2006", "points"],
     summary: "n-point crossover at fixed points: genes after each of `points` points are \

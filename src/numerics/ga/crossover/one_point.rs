@@ -8,7 +8,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "one_point",
     aliases: &["single_point"],
     summary: "one-point crossover: the genes after a random point are exchanged",

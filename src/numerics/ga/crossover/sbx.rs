@@ -11,7 +11,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "sbx",
     aliases: &["simulated_binary"],
     summary: "simulated binary crossover: genes near those of the parents, closer for larger `eta`",

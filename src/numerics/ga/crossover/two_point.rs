@@ -9,7 +9,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "two_point",
     aliases: &["double_point"],
     summary: "two-point crossover: the genes between two random points are exchanged",

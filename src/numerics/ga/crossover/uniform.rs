@@ -8,7 +8,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Crossover> = Entry {
+pub(crate) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "uniform",
     aliases: &["discrete"],
     summary: "uniform crossover: each gene is exchanged with the probability `swap`",

@@ -10,7 +10,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Mutation> = Entry {
+pub(crate) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "gaussian",
     aliases: &["normal"],
     summary: "Gaussian mutation: adds a normal random number of `sigma` times the width of the \

@@ -14,7 +14,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Mutation> = Entry {
+pub(crate) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "non_uniform",
     aliases: &["michalewicz", "nonuniform"],
     summary: "non-uniform mutation: a step towards an end of the range that decreases over \

@@ -10,7 +10,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Mutation> = Entry {
+pub(crate) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "polynomial",
     aliases: &["deb"],
     summary: "polynomial mutation: a step within the range, smaller for larger `eta`",

@@ -12,7 +12,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Mutation> = Entry {
+pub(crate) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "uniform",
     aliases: &["random"],
     summary: "uniform mutation: a gene is replaced by a uniform random value of its range",

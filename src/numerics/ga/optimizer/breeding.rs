@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 /// The operators that were chosen in place of the usual ones: their kinds, and their names with
 /// the settings given.
-pub type Chosen = Vec<(&'static str, String)>;
+pub(crate) type Chosen = Vec<(&'static str, String)>;
 
 /// The choice of this kind, or the usual one.
-pub fn take(
+pub(crate) fn take(
     options: &mut Options,
     kind: &'static str,
     usual: Choice,
@@ -94,13 +94,13 @@ impl Breeding {
     }
 
     /// These for one run.
-    pub fn for_run(&self, n_genes: usize, rng: &mut Mrg32k3a) -> Breeding {
+    pub(crate) fn for_run(&self, n_genes: usize, rng: &mut Mrg32k3a) -> Breeding {
         let crossover = self.crossover.for_run(n_genes, rng);
         Breeding { crossover: crossover.unwrap_or_else(|| self.crossover.clone()), ..self.clone() }
     }
 
     /// Recombines two parents to two children, or copies them unaltered.
-    pub fn cross(
+    pub(crate) fn cross(
         &self,
         first: &mut [f64],
         second: &mut [f64],
@@ -114,7 +114,7 @@ impl Breeding {
     }
 
     /// Mutates a child.
-    pub fn mutate(
+    pub(crate) fn mutate(
         &self,
         child: &mut [f64],
         genes: &[Gene],
@@ -164,11 +164,11 @@ fn frequency(
 }
 
 /// The generations that a run is to have, where its evaluations are known.
-pub fn planned(setup: &Setup, individuals: usize) -> Option<f64> {
+pub(crate) fn planned(setup: &Setup, individuals: usize) -> Option<f64> {
     setup.budget.map(|budget| budget as f64 / individuals.max(1) as f64)
 }
 
 /// The genes in the unit cube.
-pub fn unit(genes: Vec<Gene>) -> Vec<Gene> {
+pub(crate) fn unit(genes: Vec<Gene>) -> Vec<Gene> {
     genes.into_iter().map(|gene| Gene { min: 0.0, max: 1.0, ..gene }).collect()
 }

@@ -12,7 +12,7 @@ use crate::registry::Entry;
 use nalgebra::{DMatrix, DVector};
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "cma_es",
     aliases: &["cmaes", "cma-es"],
     summary: "covariance matrix adaptation evolution strategy, restarted with a larger population",

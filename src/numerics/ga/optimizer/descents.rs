@@ -26,7 +26,7 @@ const BAD: f64 = 0.1;
 /// Descents of which the best minimum must be the end at least, and the expected part of the search
 /// space that leads to minima not yet seen, above which a search continues: one minimum needs 5
 /// descents, two need 5, three 7, four 9, ten 20.
-pub const FEWEST: usize = 5;
+pub(crate) const FEWEST: usize = 5;
 const UNSEEN: f64 = 0.3;
 /// Where the best of so many descents has ended at no minimum, and the last ones, half of all but so many
 /// at least, have not improved on it by this part, further ones will not come to one either: derivatives
@@ -50,7 +50,7 @@ const DISTINCT: f64 = 0.05;
 
 /// All descents of a search; those of a round are asked together, trials first, then Jacobians. A
 /// descent ends as soon as it is on the way to a minimum that another one has reached.
-pub struct Pool {
+pub(crate) struct Pool {
     descents: Vec<Descent>,
     /// The descent that had reached the minimum to which each leads.
     joined: Vec<Option<usize>>,
@@ -70,7 +70,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    pub fn new(accuracy: Accuracy, reach: Vec<f64>) -> Pool {
+    pub(crate) fn new(accuracy: Accuracy, reach: Vec<f64>) -> Pool {
         Pool {
             descents: Vec::new(),
             joined: Vec::new(),
@@ -88,7 +88,7 @@ impl Pool {
     /// Begins a round: descends from these starts, continues with the best of the descents whose
     /// steps were used up, and refines the best minimum. The first `independent` starts owe
     /// nothing to earlier descents; descents from the last `short` ones have short steps.
-    pub fn begin(&mut self, starts: Vec<Vec<f64>>, [independent, short]: [usize; 2]) {
+    pub(crate) fn begin(&mut self, starts: Vec<Vec<f64>>, [independent, short]: [usize; 2]) {
         self.active.clear();
         self.rounds.push((self.descents.len(), self.smallest()));
         for open in self.open() {
@@ -123,7 +123,7 @@ impl Pool {
     }
 
     /// Whether short steps are shorter than a range.
-    pub fn has_short_steps(&self) -> bool {
+    pub(crate) fn has_short_steps(&self) -> bool {
         self.reach.iter().any(|reach| *reach < 1.0)
     }
 
@@ -136,7 +136,7 @@ impl Pool {
     }
 
     /// Continues with the best minimum alone; whether there is anything to do.
-    pub fn finish(&mut self) -> bool {
+    pub(crate) fn finish(&mut self) -> bool {
         self.active.clear();
         self.refine();
         self.shares = vec![0; self.active.len()];
@@ -144,7 +144,7 @@ impl Pool {
     }
 
     /// Asks for the next individuals; without any the round is over.
-    pub fn ask(&mut self, batch: &mut Genomes) {
+    pub(crate) fn ask(&mut self, batch: &mut Genomes) {
         for required in [Required::Residuals, Required::Jacobians] {
             self.required = required;
             for (&k, share) in self.active.iter().zip(&mut self.shares) {
@@ -161,11 +161,11 @@ impl Pool {
         self.active.clear();
     }
 
-    pub fn required(&self) -> Required {
+    pub(crate) fn required(&self) -> Required {
         self.required
     }
 
-    pub fn tell(&mut self, count: usize, answers: &Answers<'_>) {
+    pub(crate) fn tell(&mut self, count: usize, answers: &Answers<'_>) {
         let mut first = 0;
         for (&k, &share) in self.active.iter().zip(&self.shares) {
             if share > 0 {
@@ -192,7 +192,7 @@ impl Pool {
     }
 
     /// Forgets everything, as the ranges have changed.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         *self = Pool::new(self.accuracy, std::mem::take(&mut self.reach));
     }
 
@@ -209,23 +209,23 @@ impl Pool {
     }
 
     /// The smallest sum of squares.
-    pub fn smallest(&self) -> f64 {
+    pub(crate) fn smallest(&self) -> f64 {
         self.best().map_or(f64::INFINITY, |best| self.descents[best].sum())
     }
 
     /// The number of descents.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.descents.len()
     }
 
     /// Whether a place is far from where descents have started and where they stand.
-    pub fn is_new(&self, genome: &[f64]) -> bool {
+    pub(crate) fn is_new(&self, genome: &[f64]) -> bool {
         self.descents.iter().flat_map(Descent::places).all(|known| is_far(known, genome))
     }
 
     /// Moves up to `count` of the candidates, best first, to the starts: those that are new, and those
     /// that are better than all descents. Candidates that are neither are left out.
-    pub fn choose(
+    pub(crate) fn choose(
         &self,
         candidates: &mut Vec<(Vec<f64>, f64)>,
         count: usize,
@@ -317,7 +317,7 @@ impl Pool {
     /// Whether descents alone do not get on: most of them have not ended at minima, the best minimum was
     /// reached by one in five of them or fewer, or it fits badly while others were reached. A bad fit to
     /// which all descents lead is a matter of the model or of the data.
-    pub fn is_doubtful(&self) -> bool {
+    pub(crate) fn is_doubtful(&self) -> bool {
         let reports = self.reports();
         let at_minima = reports.iter().filter(|report| report.ending.is_at_minimum()).count();
         let is_other =
@@ -341,7 +341,7 @@ impl Pool {
         }
     }
 
-    pub fn reports(&self) -> Vec<DescentReport> {
+    pub(crate) fn reports(&self) -> Vec<DescentReport> {
         let groups = self.groups();
         let report = |(k, group): (usize, usize)| {
             let own = self.descents[k].report();
@@ -354,7 +354,7 @@ impl Pool {
 }
 
 /// Whether two places differ by more than the same start does.
-pub fn is_far(a: &[f64], b: &[f64]) -> bool {
+pub(crate) fn is_far(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).any(|(a, b)| (a - b).abs() > DISTINCT)
 }
 

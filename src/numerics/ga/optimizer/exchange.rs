@@ -64,7 +64,7 @@ pub(crate) struct Exchanges {
 }
 
 impl Exchanges {
-    pub fn new(scales: Vec<Scale>) -> Exchanges {
+    pub(crate) fn new(scales: Vec<Scale>) -> Exchanges {
         let n = scales.len();
         let all = (0..n).flat_map(|a| (a + 1..n).map(move |b| [a, b]));
         let mut pairs: Vec<([usize; 2], f64)> =
@@ -76,7 +76,7 @@ impl Exchanges {
 
     /// The next place that differs from `best` by an exchange; from the first pair on where `best` is
     /// another place than before, as `is_same` says.
-    pub fn next(
+    pub(crate) fn next(
         &mut self,
         best: &[f64],
         is_same: impl Fn(&[f64], &[f64]) -> bool,

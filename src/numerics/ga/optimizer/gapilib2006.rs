@@ -19,7 +19,7 @@ use crate::{bail, fault};
 use std::sync::Arc;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "gapilib2006",
     aliases: &["gapilib"],
     summary: "the genetic algorithm of the paper, exactly",

@@ -21,7 +21,7 @@ use crate::registry::{BAD_OPTION, Entry, Options};
 use std::sync::Arc;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "genetic",
     aliases: &["ga", "genetic_algorithm"],
     summary: "genetic algorithm: Latin hypercube, tournament, SBX, polynomial mutation, elites",

@@ -31,7 +31,7 @@ pub(super) struct Islands {
 }
 
 impl Islands {
-    pub fn new(islands: Vec<Box<dyn Island>>, interval: u64) -> Islands {
+    pub(crate) fn new(islands: Vec<Box<dyn Island>>, interval: u64) -> Islands {
         Islands { islands, sizes: Vec::new(), interval, generation: 0 }
     }
 

@@ -19,7 +19,7 @@ use crate::registry::Entry;
 use nalgebra::DVector;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "levenberg_marquardt",
     aliases: &["lm", "levenberg-marquardt"],
     summary: "nonlinear least squares from one point: the start values if given, otherwise the \
@@ -96,7 +96,7 @@ impl Method for LevenbergMarquardt {
 
 /// How exact the answers are.
 #[derive(Debug, Clone, Copy)]
-pub struct Accuracy {
+pub(crate) struct Accuracy {
     /// Relative error of the simulated values.
     pub(super) noise: f64,
     /// Root of the sum of squares of the measured values, weighted as the residuals are.
@@ -104,7 +104,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    pub fn of(setup: &Setup) -> Accuracy {
+    pub(crate) fn of(setup: &Setup) -> Accuracy {
         Accuracy { noise: setup.noise, size: setup.size }
     }
 
@@ -114,7 +114,7 @@ impl Accuracy {
     }
 
     /// Singular values below this are those of errors of the derivatives.
-    pub fn rank_tolerance(self) -> f64 {
+    pub(crate) fn rank_tolerance(self) -> f64 {
         elementary::powf(self.noise, 2.0 / 3.0).clamp(1e-9, 1e-4)
     }
 }
@@ -129,7 +129,7 @@ enum Request {
 }
 
 /// One descent.
-pub struct Descent {
+pub(crate) struct Descent {
     start: Vec<f64>,
     x: Vec<f64>,
     sum: f64,
@@ -156,7 +156,7 @@ pub struct Descent {
 }
 
 impl Descent {
-    pub fn new(start: Vec<f64>, accuracy: Accuracy, steps: usize, goal: f64) -> Descent {
+    pub(crate) fn new(start: Vec<f64>, accuracy: Accuracy, steps: usize, goal: f64) -> Descent {
         Descent {
             x: start.clone(),
             trial: start.clone(),
@@ -187,13 +187,13 @@ impl Descent {
     }
 
     /// Whether it has ended by itself.
-    pub fn has_ended(&self) -> bool {
+    pub(crate) fn has_ended(&self) -> bool {
         self.end.is_some()
     }
 
     /// Allows further steps, up to a relative offset; one that has ended at a minimum continues if
     /// it was not that near to it.
-    pub fn grant(&mut self, steps: usize, goal: f64) {
+    pub(crate) fn grant(&mut self, steps: usize, goal: f64) {
         self.left = steps;
         if goal < self.goal && self.end == Some(DescentEnd::Minimum) {
             self.goal = goal;
@@ -209,14 +209,14 @@ impl Descent {
     }
 
     /// Whether it has just come to a place whose derivatives are not yet known.
-    pub fn has_moved(&self) -> bool {
+    pub(crate) fn has_moved(&self) -> bool {
         self.end.is_none() && self.asked == Request::Jacobian
     }
 
     /// Whether it is on the way to the minimum where `other` has ended: the linear model about this
     /// minimum, which determines every gene, predicts its residuals. This model is convex, and so
     /// there is no other minimum between them.
-    pub fn leads_to(&self, other: &Descent) -> bool {
+    pub(crate) fn leads_to(&self, other: &Descent) -> bool {
         let n = self.x.len();
         let Some(offset) = other.offset else { return false };
         let is_known = other.end == Some(DescentEnd::Minimum) && !offset.blind;
@@ -235,22 +235,22 @@ impl Descent {
     }
 
     /// Ends it on the way to a known minimum.
-    pub fn join(&mut self) {
+    pub(crate) fn join(&mut self) {
         self.end = Some(DescentEnd::Joined);
     }
 
     /// Whether a bound holds a gene where it stands.
-    pub fn is_held(&self) -> bool {
+    pub(crate) fn is_held(&self) -> bool {
         self.offset.is_some_and(|offset| offset.held > 0)
     }
 
     /// The sum of squares where it stands.
-    pub fn sum(&self) -> f64 {
+    pub(crate) fn sum(&self) -> f64 {
         self.sum
     }
 
     /// Where it started, where it stands and how it ended.
-    pub fn report(&self) -> DescentReport {
+    pub(crate) fn report(&self) -> DescentReport {
         DescentReport {
             start: self.start.clone(),
             end: self.x.clone(),
@@ -265,7 +265,7 @@ impl Descent {
     /// Whether another descent has ended at the same minimum: the sums of squares agree, and so do
     /// the places, by their effect on the residuals, or the residuals themselves where the data do
     /// not determine the place.
-    pub fn agrees(&self, other: &Descent) -> bool {
+    pub(crate) fn agrees(&self, other: &Descent) -> bool {
         let (Some(model), Some(offset)) = (&self.model, self.offset) else { return false };
         // Residuals of the size of the errors of the simulation are those of an exact fit, wherever in a
         // valley: noise-free data of a model with a structurally non-identifiable product.
@@ -423,7 +423,7 @@ const SAME_PLACE: f64 = 1e-5;
 const AGREED: f64 = 0.03;
 
 /// Whether a point with such an offset and residuals of such a length is a minimum.
-pub fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) -> bool {
+pub(crate) fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) -> bool {
     if offset.blind || offset.rank == 0 && offset.held == 0 {
         return false;
     }
@@ -462,7 +462,7 @@ impl Descent {
     }
 
     /// Takes the answers about it.
-    pub fn take(&mut self, answers: &Answers<'_>) {
+    pub(crate) fn take(&mut self, answers: &Answers<'_>) {
         match self.asked {
             Request::Start => {
                 self.sum = answers.residuals.iter().map(|r| r * r).sum();
@@ -481,7 +481,7 @@ impl Descent {
     }
 
     /// Where it started and where it stands.
-    pub fn places(&self) -> [&[f64]; 2] {
+    pub(crate) fn places(&self) -> [&[f64]; 2] {
         [&self.start, &self.x]
     }
 }

@@ -44,7 +44,7 @@ pub(crate) struct LinearModel {
 }
 
 /// A step and what the model says of it.
-pub struct Step {
+pub(crate) struct Step {
     /// The step.
     pub(super) by: Vec<f64>,
     /// Its scaled length.
@@ -79,7 +79,7 @@ pub struct Offset {
 impl LinearModel {
     /// From residuals and their derivatives, residuals × genes; `rank_tolerance`: relative error of
     /// the derivatives.
-    pub fn new(residuals: &[f64], jacobian: &[f64], n: usize, rank_tolerance: f64) -> Self {
+    pub(crate) fn new(residuals: &[f64], jacobian: &[f64], n: usize, rank_tolerance: f64) -> Self {
         let m = residuals.len();
         let mut jacobian = DMatrix::from_row_slice(m, n, jacobian);
         let mut blind = false;
@@ -120,7 +120,12 @@ impl LinearModel {
 
     /// The step from `x` of at most `radius` in the scales and of at most `reach` in each gene, within the
     /// unit cube; `None` where no gene can move.
-    pub fn step(&self, x: &[f64], (scales, reach): (&[f64], &[f64]), radius: f64) -> Option<Step> {
+    pub(crate) fn step(
+        &self,
+        x: &[f64],
+        (scales, reach): (&[f64], &[f64]),
+        radius: f64,
+    ) -> Option<Step> {
         let projected = self.projected_step(x, (scales, reach), radius)?;
         if projected.free.len() == self.free(x).len() {
             return Some(projected);
@@ -209,7 +214,7 @@ impl LinearModel {
 
     /// The geodesic acceleration of a step; `gradient`: Jᵀ times the second derivative of the
     /// residuals in its direction.
-    pub fn acceleration(
+    pub(crate) fn acceleration(
         &self,
         step: &Step,
         scales: &[f64],
@@ -233,7 +238,7 @@ impl LinearModel {
     }
 
     /// How near `x` is to a minimum.
-    pub fn offset(&self, x: &[f64]) -> Offset {
+    pub(crate) fn offset(&self, x: &[f64]) -> Offset {
         let free = self.free(x);
         let flat = self.norms.iter().filter(|norm| **norm == 0.0).count();
         let held = x.len() - free.len() - flat;
@@ -260,7 +265,7 @@ impl LinearModel {
     }
 
     /// Length of J (a − b) over the genes.
-    pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let between = DVector::from_fn(a.len(), |j, _| a[j] - b[j]);
         (&self.factor * between).norm()
     }

@@ -11,7 +11,7 @@ use crate::ga::{Genomes, Mrg32k3a, order};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "lshade",
     aliases: &["l-shade", "differential_evolution"],
     summary: "differential evolution with success-history adaptation and linear population size \

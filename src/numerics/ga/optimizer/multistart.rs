@@ -7,7 +7,7 @@ use crate::diag::Fault;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "multistart",
     aliases: &["multi-start"],
     summary: "Levenberg-Marquardt from the best points of Latin hypercubes",

@@ -9,7 +9,7 @@ use crate::ga::Genomes;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "nelder_mead",
     aliases: &["simplex", "nelder-mead"],
     summary: "downhill simplex from one point: does not need a smooth fitness",

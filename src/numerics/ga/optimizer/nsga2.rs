@@ -16,7 +16,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Method> = Entry {
+pub(crate) const ENTRY: Entry<dyn Method> = Entry {
     name: "nsga2",
     aliases: &["nsga-ii"],
     summary: "several fitness functions: a Pareto front",

@@ -9,7 +9,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Sampling> = Entry {
+pub(crate) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "latin_hypercube",
     aliases: &["lhs"],
     summary: "Latin hypercube: one value per slice of each range",

@@ -10,7 +10,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Sampling> = Entry {
+pub(crate) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "sobol",
     aliases: &["quasi_random"],
     summary: "low-discrepancy sequence for any number of genes",

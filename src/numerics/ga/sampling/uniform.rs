@@ -8,7 +8,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Sampling> = Entry {
+pub(crate) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "uniform",
     aliases: &["random"],
     summary: "each gene uniform over its range",

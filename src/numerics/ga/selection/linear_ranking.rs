@@ -9,7 +9,7 @@ use crate::ga::{Mrg32k3a, order};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Selection> = Entry {
+pub(crate) const ENTRY: Entry<dyn Selection> = Entry {
     name: "linear_ranking",
     aliases: &["ranking"],
     summary: "linear ranking: the best is `pressure` times as likely as the average, decreasing \

@@ -11,7 +11,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Selection> = Entry {
+pub(crate) const ENTRY: Entry<dyn Selection> = Entry {
     name: "roulette",
     aliases: &["proportionate", "fitness_proportionate"],
     summary: "fitness-proportional: probability proportional to the distance from the worst \

@@ -9,7 +9,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Selection> = Entry {
+pub(crate) const ENTRY: Entry<dyn Selection> = Entry {
     name: "shuffle",
     aliases: &["random"],
     summary: "every individual becomes a parent, in random order",

@@ -10,7 +10,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Selection> = Entry {
+pub(crate) const ENTRY: Entry<dyn Selection> = Entry {
     name: "stochastic_universal",
     aliases: &["sus"],
     summary: "as roulette, with one spin of a wheel with one pointer per parent",

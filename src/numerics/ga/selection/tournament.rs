@@ -10,7 +10,7 @@ use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Selection> = Entry {
+pub(crate) const ENTRY: Entry<dyn Selection> = Entry {
     name: "tournament",
     aliases: &["binary_tournament"],
     summary: "the best of `size` random individuals becomes a parent",

@@ -10,7 +10,7 @@ use crate::ga::{Mrg32k3a, order};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Selection> = Entry {
+pub(crate) const ENTRY: Entry<dyn Selection> = Entry {
     name: "truncation",
     aliases: &["best"],
     summary: "the best individuals become parents, at most the fraction `share`; adjacent ranks mate",

@@ -13,7 +13,7 @@ use crate::ga::Gene;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Survival> = Entry {
+pub(crate) const ENTRY: Entry<dyn Survival> = Entry {
     name: "crowding",
     aliases: &["deterministic_crowding"],
     summary: "deterministic crowding: a child replaces the more similar parent if it is better",

@@ -13,7 +13,7 @@ use crate::ga::{Genomes, order};
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Survival> = Entry {
+pub(crate) const ENTRY: Entry<dyn Survival> = Entry {
     name: "elitism",
     aliases: &["elites"],
     summary: "the best `elites` of the method survive, offspring replace the others",

@@ -7,7 +7,7 @@ use crate::diag::Fault;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Survival> = Entry {
+pub(crate) const ENTRY: Entry<dyn Survival> = Entry {
     name: "generational",
     aliases: &["replace_all"],
     summary: "the offspring replace the whole population",

@@ -8,7 +8,7 @@ use crate::diag::Fault;
 use crate::registry::Entry;
 
 /// The table entry.
-pub const ENTRY: Entry<dyn Survival> = Entry {
+pub(crate) const ENTRY: Entry<dyn Survival> = Entry {
     name: "mu_plus_lambda",
     aliases: &["plus", "mu+lambda"],
     summary: "the best of the generation and its `offspring` (0: as many as the population)",

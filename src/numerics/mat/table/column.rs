@@ -9,7 +9,7 @@ use crate::fault;
 use crate::mat::errors::BAD_TABLE;
 
 /// What a column holds.
-pub enum Content {
+pub(crate) enum Content {
     /// Numbers; NaN where there is none.
     Numbers(Vec<f64>),
     /// Dates and times of day.
@@ -17,7 +17,7 @@ pub enum Content {
 }
 
 /// A column as it was read, and what is to be said of it.
-pub struct Parsed {
+pub(crate) struct Parsed {
     pub content: Content,
     pub notes: Vec<String>,
 }
@@ -61,18 +61,18 @@ impl<'r> Cells<'r, '_> {
     }
 
     /// A cell by its row, with its place.
-    pub fn cell(self, row: usize) -> String {
+    pub(crate) fn cell(self, row: usize) -> String {
         let (line, cell) = self.all().nth(row).unwrap_or_default();
         format!("{}: `{}` in `{}`", self.place(line), short(cell), self.name)
     }
 
     /// Whether all cells are empty.
-    pub fn is_empty(self) -> bool {
+    pub(crate) fn is_empty(self) -> bool {
         self.all().all(|(_, cell)| cell.is_empty())
     }
 
     /// The cells where some are words: those of a column that `is_unreadable`, or of truth values.
-    pub fn words(self, is_unreadable: bool) -> Option<Vec<Option<String>>> {
+    pub(crate) fn words(self, is_unreadable: bool) -> Option<Vec<Option<String>>> {
         let mut present = self.all().map(|(_, cell)| cell).filter(|cell| missing(cell).is_none());
         let is_truth = present.next().is_some_and(|cell| truth(cell).is_some());
         let known = |cell: &str| missing(cell).is_none().then(|| cell.to_owned());
@@ -80,7 +80,7 @@ impl<'r> Cells<'r, '_> {
     }
 
     /// The column as numbers or moments; `usual` is the decimal mark of the file.
-    pub fn parse(self, usual: Option<char>) -> Result<Parsed, Fault> {
+    pub(crate) fn parse(self, usual: Option<char>) -> Result<Parsed, Fault> {
         let first = self.all().find(|(_, cell)| missing(cell).is_none());
         match first {
             Some((_, cell)) if form(cell).is_none() && moment(cell).is_some() => self.moments(),

@@ -20,7 +20,7 @@ const SAMPLE: usize = 200;
 const OTHER_TABLE: usize = 3;
 
 /// The rows of a table by what they are.
-pub struct Layout<'a> {
+pub(crate) struct Layout<'a> {
     pub head: Record<'a>,
     pub units: Option<Record<'a>>,
     pub rows: Vec<Record<'a>>,
@@ -29,7 +29,7 @@ pub struct Layout<'a> {
 }
 
 /// The separator with which the most rows fall into numbers.
-pub fn separator(text: &str) -> Separator {
+pub(crate) fn separator(text: &str) -> Separator {
     let count = lines(text).count();
     let sample = || {
         let near = |(number, _): &(usize, _)| *number < SAMPLE || *number + SAMPLE >= count;
@@ -97,7 +97,7 @@ fn has_value(record: &Record<'_>) -> bool {
 }
 
 /// Finds out which rows are what; `text` is the comment that may contain the names.
-pub fn layout<'a>(
+pub(crate) fn layout<'a>(
     mut records: Vec<Record<'a>>,
     source: Option<(&'a str, Separator)>,
     places: Places,
@@ -328,6 +328,6 @@ fn checked<'a>(
 }
 
 /// The name of a column of the head, without a comma that precedes blanks.
-pub fn name(cell: &str) -> &str {
+pub(crate) fn name(cell: &str) -> &str {
     without_brackets(cell.trim().trim_end_matches([',', ';']).trim())
 }

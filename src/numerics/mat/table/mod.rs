@@ -68,7 +68,7 @@ impl Places {
 ///
 /// `bad-table`: no table, no names, rows that are shorter or longer than the head. Faults name line
 /// and column.
-pub fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
+pub(crate) fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
     let text = instruments::table_of(decode::lines_of(bytes)?);
     let separator = layout::separator(&text);
     let records = records::records(&text, separator);

@@ -28,14 +28,14 @@ enum Date {
 
 /// What the first cell of a column of moments holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MomentKind {
+pub(crate) enum MomentKind {
     Date,
     Clock,
     Both,
 }
 
 impl Moment {
-    pub fn kind(self) -> MomentKind {
+    pub(crate) fn kind(self) -> MomentKind {
         match (self.date, self.clock) {
             (Some(_), Some(_)) => MomentKind::Both,
             (Some(_), None) => MomentKind::Date,
@@ -45,7 +45,7 @@ impl Moment {
 }
 
 /// The moment that a cell holds.
-pub fn moment(cell: &str) -> Option<Moment> {
+pub(crate) fn moment(cell: &str) -> Option<Moment> {
     // Most cells are numbers; the longest moment has 35 characters.
     if cell.len() < 4 || cell.len() > 40 || !cell.is_ascii() {
         return None;
@@ -216,7 +216,7 @@ fn civil(days: i64) -> [i64; 3] {
 }
 
 /// What moments of a column mean as seconds.
-pub struct Seconds {
+pub(crate) struct Seconds {
     /// NaN where there is none.
     pub values: Vec<f64>,
     /// From what they were made, as the end of a sentence about the column.
@@ -226,7 +226,7 @@ pub struct Seconds {
 /// Moments of a column as seconds. Dates count from the first point; clocks without a date as they
 /// are, unless they show the time of a day. `dates` are of another column, `hint` is the name of
 /// the column with its unit, `cell` names a cell of the dates by its row.
-pub fn seconds(
+pub(crate) fn seconds(
     moments: &[Option<Moment>],
     dates: Option<&[Option<Moment>]>,
     hint: &str,

@@ -5,7 +5,7 @@
 
 /// What a cell can be as a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
+pub(crate) enum Form {
     /// No marks at all.
     Integer,
     /// This mark is the decimal one: `0.5`, `12,75`.
@@ -20,7 +20,7 @@ pub enum Form {
 const ONLY_GROUPS: [char; 6] = ['\'', '’', ' ', '\u{a0}', '\u{202f}', '\u{2009}'];
 
 /// The form of a cell; `None` where it is not a number.
-pub fn form(cell: &str) -> Option<Form> {
+pub(crate) fn form(cell: &str) -> Option<Form> {
     let digits = cell.strip_prefix(['+', '-', '−']).unwrap_or(cell);
     let (mantissa, exponent) = match digits.find(['e', 'E', 'd', 'D']) {
         Some(at) => (&digits[..at], Some(&digits[at + 1..])),
@@ -89,7 +89,7 @@ fn is_grouped(text: &str, mark: char) -> bool {
 
 impl Form {
     /// The decimal mark that this form is evidence of.
-    pub fn decimal(self) -> Option<char> {
+    pub(crate) fn decimal(self) -> Option<char> {
         match self {
             Form::Decimal(mark) | Form::Grouped { decimal: Some(mark), .. } => Some(mark),
             Form::Grouped { group: '.', .. } => Some(','),
@@ -100,7 +100,7 @@ impl Form {
 }
 
 /// The value of a cell whose decimal mark is known.
-pub fn value(cell: &str, decimal: char) -> Option<f64> {
+pub(crate) fn value(cell: &str, decimal: char) -> Option<f64> {
     // The common case allocates nothing.
     if decimal == '.'
         && let Ok(value) = cell.parse()
@@ -122,7 +122,7 @@ pub fn value(cell: &str, decimal: char) -> Option<f64> {
 
 /// What stands for a value that is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Missing {
+pub(crate) enum Missing {
     /// An empty cell, `NaN`, `n/a`, dashes.
     Nothing,
     /// An instrument or a spreadsheet says why: `OVRFLW`, `#DIV/0!`.
@@ -130,7 +130,7 @@ pub enum Missing {
 }
 
 /// Whether a cell says that there is no value.
-pub fn missing(cell: &str) -> Option<Missing> {
+pub(crate) fn missing(cell: &str) -> Option<Missing> {
     const NOTHING: [&str; 12] = [
         "nan", "n/a", "na", "#n/a", "#nv", "#n/v", "n.a.", "null", "none", "missing", "nil", "n.d.",
     ];

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 /// What stands between cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Separator {
+pub(crate) enum Separator {
     /// One character.
     Mark(char),
     /// Any number of blanks.
@@ -13,20 +13,20 @@ pub enum Separator {
 
 impl Separator {
     /// Those that are tried, the first of equally good ones taken.
-    pub const ALL: [Separator; 4] =
+    pub(crate) const ALL: [Separator; 4] =
         [Separator::Mark(';'), Separator::Mark('\t'), Separator::Mark(','), Separator::Blanks];
 }
 
 /// A row of cells with the number of its line, counted from 1.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Record<'a> {
+pub(crate) struct Record<'a> {
     pub line: usize,
     pub cells: Vec<Cow<'a, str>>,
 }
 
 impl Record<'_> {
     /// The number of cells without empty ones at the end.
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
     }
 }
@@ -35,7 +35,7 @@ impl Record<'_> {
 const MOST_QUOTED_LINES: usize = 20;
 
 /// The lines that hold cells: neither blank, nor comments, nor rules drawn under a head.
-pub fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.split('\n')
         .enumerate()
         .map(|(number, line)| (number + 1, line))
@@ -44,7 +44,7 @@ pub fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 
 /// Whether the line is a comment. A mark after a tab is a cell: some instruments write `#` as the
 /// unit of a count.
-pub fn is_comment(line: &str) -> bool {
+pub(crate) fn is_comment(line: &str) -> bool {
     let line = line.trim_start_matches(' ');
     line.starts_with(['#', '%']) || line.starts_with("//")
 }
@@ -57,7 +57,7 @@ fn is_rule(line: &str) -> bool {
 }
 
 /// All rows of a text.
-pub fn records(text: &str, separator: Separator) -> Vec<Record<'_>> {
+pub(crate) fn records(text: &str, separator: Separator) -> Vec<Record<'_>> {
     let mut found = Vec::new();
     let mut done = 0;
     for (line, content) in lines(text) {
@@ -96,7 +96,7 @@ fn split_quoted<'a>(
 }
 
 /// The cells of a line, and whether a quotation mark lacks its partner.
-pub fn split(line: &str, separator: Separator) -> (Vec<Cow<'_, str>>, bool) {
+pub(crate) fn split(line: &str, separator: Separator) -> (Vec<Cow<'_, str>>, bool) {
     let mut cells = Vec::new();
     let mut rest = match separator {
         Separator::Blanks => line.trim(),

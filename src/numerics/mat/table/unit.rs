@@ -7,7 +7,7 @@ const OTHER: [&str; 9] = ["#", "-", "1", "bits", "a.u.", "arb.u.", "counts", "pH
 
 /// The name and the unit of a column's head. The unit is one that is known; any other text in
 /// brackets belongs to the header, but the name alone denotes the column, too.
-pub fn split(head: &str) -> (Option<&str>, Option<String>) {
+pub(crate) fn split(head: &str) -> (Option<&str>, Option<String>) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         let Some(inner) = head.strip_suffix(close) else { continue };
         let Some((name, unit)) = inner.rsplit_once(open) else { continue };

@@ -162,7 +162,7 @@ impl Apart<'_> {
     }
 
     /// The scalar that an expression is; `None` of an array.
-    pub(super) fn only(&self, e: &Expression) -> Option<Expression> {
+    fn only(&self, e: &Expression) -> Option<Expression> {
         let mut parts = self.parts(e)?;
         parts.dims.is_empty().then(|| parts.scalars.pop()).flatten()
     }

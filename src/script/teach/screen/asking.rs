@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 /// The questions of a walk.
 #[derive(Debug, Clone, Default)]
-pub struct Quiz {
+pub(crate) struct Quiz {
     score: Score,
     /// Generation and step, from 0, of what has been asked: nothing is asked twice.
     asked: BTreeSet<(usize, usize)>,

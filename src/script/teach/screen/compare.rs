@@ -12,7 +12,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Axis, Block, Borders, Chart, Dataset, GraphType, Paragraph};
 
 /// Draws both runs, and what came of the change below.
-pub fn draw(screen: &Screen, frame: &mut Frame, area: Rect) {
+pub(crate) fn draw(screen: &Screen, frame: &mut Frame, area: Rect) {
     let Some(branches) = screen.branches() else { return };
     let [above, below] = Layout::vertical([Constraint::Min(4), Constraint::Length(2)]).areas(area);
     let [original, changed] = branches.curves();

@@ -10,7 +10,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Axis, Block, Borders, Chart, Dataset, GraphType, Paragraph, Wrap};
 
 /// Draws individual `k` of the generation.
-pub fn draw(screen: &Screen, k: usize, frame: &mut Frame, area: Rect) {
+pub(crate) fn draw(screen: &Screen, k: usize, frame: &mut Frame, area: Rect) {
     let [left, right] =
         Layout::horizontal([Constraint::Min(30), Constraint::Length(36)]).areas(area);
     let (x, y) = &screen.walk.trace().measured;

@@ -7,7 +7,7 @@ use crate::teach::walk::TraceCursor;
 
 /// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Question {
+pub(crate) enum Question {
     Generation,
     Follow,
     Inspect,
@@ -17,14 +17,14 @@ pub enum Question {
 
 /// A question and the answer so far.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Prompt {
+pub(crate) struct Prompt {
     question: Question,
     pub(super) text: String,
 }
 
 impl Prompt {
     /// The question that a key asks.
-    pub fn of(key: Key) -> Option<Prompt> {
+    pub(crate) fn of(key: Key) -> Option<Prompt> {
         let question = match key {
             Key::Char('g') => Question::Generation,
             Key::Char('f') => Question::Follow,
@@ -37,7 +37,7 @@ impl Prompt {
     }
 
     /// The question as it is shown.
-    pub fn shown(&self) -> String {
+    pub(crate) fn shown(&self) -> String {
         let question = match self.question {
             Question::Generation => "go to generation",
             Question::Follow => "follow individual (empty: the best)",
@@ -50,7 +50,7 @@ impl Prompt {
 }
 
 /// Does what was answered; the text says why not, or is empty.
-pub fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, String> {
+pub(crate) fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, String> {
     let text = prompt.text.trim();
     match prompt.question {
         Question::Generation => {

@@ -21,7 +21,7 @@ pub(crate) fn width_of_numbers(screen: &Screen) -> u16 {
 }
 
 /// Lines of the panel, `width` columns wide, and the one that should be seen.
-pub fn lines(screen: &Screen, width: u16) -> (Vec<Line<'static>>, usize) {
+pub(crate) fn lines(screen: &Screen, width: u16) -> (Vec<Line<'static>>, usize) {
     let walk = &screen.walk;
     match walk.step() {
         Step::Cross(rank) => (crossover(screen, rank), 0),

@@ -10,7 +10,7 @@ use crate::syntax::ast::{ClassSpecifier, Restriction};
 impl<'a> Scope<'a> {
     /// Whether it may have elements that no declaration shows: it is replaceable, or
     /// [inherits](Scope::inherits_open) such.
-    pub fn is_open(self) -> bool {
+    pub(crate) fn is_open(self) -> bool {
         self.library.is_replaceable(self.class) || self.inherits_open()
     }
 
@@ -25,7 +25,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Whether names in its text may mean elements that no declaration shows.
-    pub fn has_open_names(self) -> bool {
+    pub(crate) fn has_open_names(self) -> bool {
         let mut around = std::iter::successors(Some(self), |scope| scope.around());
         let has_open = |class: Scope<'a>| {
             let bases = class.library.declared_bases(class.class);
@@ -73,7 +73,7 @@ fn is_replaceable(library: &Library, declared: Declared) -> bool {
 }
 
 /// Whether the elements of what the parts of a name mean are known.
-pub fn is_certain(library: &Library, parts: &[Option<Declared>]) -> bool {
+pub(crate) fn is_certain(library: &Library, parts: &[Option<Declared>]) -> bool {
     let is_closed = |class: ClassId| !Scope { library, class }.is_open();
     parts.iter().all(|part| {
         part.is_some_and(|part| {

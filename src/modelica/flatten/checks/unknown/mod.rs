@@ -26,7 +26,7 @@ use modified::Modified;
 use rustc_hash::FxHashSet;
 
 /// Checks the names that a class itself writes.
-pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_long = matches!(class.definition().specifier, ClassSpecifier::Long(_));
     let scope = if is_long { Some(class) } else { class.parent() };
     let mut walk = NameCheck {

@@ -10,7 +10,7 @@ use crate::name::Ident;
 
 /// What a modification is about.
 #[derive(Clone, Copy)]
-pub enum Modified<'a> {
+pub(crate) enum Modified<'a> {
     /// A class, whose elements are all known or not.
     Class { class: Scope<'a>, is_certain: bool },
     /// A variable, or a type, with the attributes of the predefined types.
@@ -21,12 +21,12 @@ pub enum Modified<'a> {
 
 impl<'a> Modified<'a> {
     /// A class by itself.
-    pub fn class(class: Scope<'a>) -> Modified<'a> {
+    pub(crate) fn class(class: Scope<'a>) -> Modified<'a> {
         Modified::of_class(class, !class.is_open())
     }
 
     /// What the parts of a name lead to.
-    pub fn by_parts(library: &'a Library, parts: &[Option<Declared>]) -> Modified<'a> {
+    pub(crate) fn by_parts(library: &'a Library, parts: &[Option<Declared>]) -> Modified<'a> {
         let is_certain = is_certain(library, parts);
         match parts.last().copied().flatten() {
             Some(Declared::Class(class)) => {
@@ -71,7 +71,7 @@ impl<'a> Modified<'a> {
     }
 
     /// The same of a component of this name.
-    pub fn of(self, name: Ident) -> Modified<'a> {
+    pub(crate) fn of(self, name: Ident) -> Modified<'a> {
         match self {
             Modified::Variable(_) => Modified::Variable(name),
             other => other,
@@ -79,7 +79,7 @@ impl<'a> Modified<'a> {
     }
 
     /// The same where another type may replace it.
-    pub fn replaceable_if(self, is_replaceable: bool) -> Modified<'a> {
+    pub(crate) fn replaceable_if(self, is_replaceable: bool) -> Modified<'a> {
         match self {
             Modified::Class { class, is_certain } => {
                 Modified::Class { class, is_certain: is_certain && !is_replaceable }
