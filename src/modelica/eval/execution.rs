@@ -20,7 +20,7 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Result<Vec<Value>, Diagnostic> {
         let _call = depth::Call::new(&function.name).at(span)?;
-        self.check_interrupted(span)?;
+        self.host.check_interrupted(span)?;
         let mut scope = Scope::of_function(function.clone(), given, span);
         if let Some(script) = self.host.script() {
             script.begin_function();

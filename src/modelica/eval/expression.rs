@@ -105,7 +105,7 @@ impl Evaluator<'_> {
 
     /// A condition: a scalar Boolean.
     pub(super) fn condition(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
-        self.begin_use(expression);
+        self.host.begin_use(expression);
         let value = self.boolean(expression)?;
         if let Some(script) = self.host.script() {
             script.tested();

@@ -100,6 +100,23 @@ pub trait Host {
     }
 }
 
+impl dyn Host + '_ {
+    /// Ends the evaluation where the host stops it.
+    pub(super) fn check_interrupted(&mut self, span: Span) -> Result<(), Diagnostic> {
+        match self.interrupted() {
+            Some(fault) => Err(fault.at(span)),
+            None => Ok(()),
+        }
+    }
+
+    /// This value is going to be assigned or tested.
+    pub(super) fn begin_use(&mut self, value: &ast::Expression) {
+        if let Some(script) = self.script() {
+            script.begin_use(value);
+        }
+    }
+}
+
 /// Runs the commands of a script, and learns what its statements do with their results.
 pub trait ScriptHost {
     /// Runs a builtin: `arguments` are complete, in the order of the header's inputs, defaults

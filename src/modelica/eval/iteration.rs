@@ -205,7 +205,7 @@ impl Evaluator<'_> {
     ) -> Result<(), Diagnostic> {
         for at in 0..range.count() {
             if at % 4096 == 4095 {
-                self.check_interrupted(index.name.span)?;
+                self.host.check_interrupted(index.name.span)?;
             }
             self.scope.iterators.push((index.name.node, range.get(at)));
             let result = iteration(self);
@@ -213,12 +213,5 @@ impl Evaluator<'_> {
             result?;
         }
         Ok(())
-    }
-
-    pub(super) fn check_interrupted(&mut self, span: Span) -> Result<(), Diagnostic> {
-        match self.host.interrupted() {
-            Some(fault) => Err(fault.at(span)),
-            None => Ok(()),
-        }
     }
 }

@@ -39,7 +39,7 @@ impl Domain for Evaluator<'_> {
     }
 
     fn call_statement(&mut self, call: &Expression) -> Executed {
-        self.check_interrupted(call.span)?;
+        self.host.check_interrupted(call.span)?;
         self.outputs(call).map(|_| ())
     }
 
@@ -64,7 +64,7 @@ impl Domain for Evaluator<'_> {
         let mut iterations = 0..range.count();
         let result = body.repeat(self, |evaluator| {
             let Some(iteration) = iterations.next() else { return Ok(false) };
-            evaluator.check_interrupted(index.name.span)?;
+            evaluator.host.check_interrupted(index.name.span)?;
             if watched && let Some(script) = evaluator.host.script() {
                 script.loop_iteration(iteration, Some(range.count()));
             }
@@ -85,7 +85,7 @@ impl Domain for Evaluator<'_> {
             if !evaluator.condition(condition)? {
                 return Ok(false);
             }
-            evaluator.check_interrupted(condition.span)?;
+            evaluator.host.check_interrupted(condition.span)?;
             if watched && iteration == 0 {
                 let simple = simple_statements(body.statements);
                 let warning = endless(condition, &simple, &targets(body.statements));
@@ -147,7 +147,7 @@ impl Evaluator<'_> {
         target: &ComponentReference,
         value: &Expression,
     ) -> Result<Value, Diagnostic> {
-        self.begin_use(value);
+        self.host.begin_use(value);
         let new = match self.scalar(value) {
             Some(scalar) => scalar.into(),
             None => self.expression(value)?,
@@ -180,7 +180,7 @@ impl Evaluator<'_> {
             let message = "only the outputs of a function call can be assigned to a list";
             return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
         }
-        self.begin_use(call);
+        self.host.begin_use(call);
         let outputs = self.outputs(call)?;
         if outputs.len() < targets.len() {
             let fault = fault!(
@@ -198,13 +198,6 @@ impl Evaluator<'_> {
             }
         }
         Ok(())
-    }
-
-    /// This value is going to be assigned or tested.
-    pub(super) fn begin_use(&mut self, value: &Expression) {
-        if let Some(script) = self.host.script() {
-            script.begin_use(value);
-        }
     }
 
     /// This value is assigned, which may say whether a command succeeded.

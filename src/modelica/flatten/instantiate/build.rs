@@ -75,7 +75,7 @@ impl Instantiation<'_> {
             if !declared.prefixes.inner {
                 return Ok(outer);
             }
-            if self.is_merged_output(node, declared)? {
+            if self.classes.is_merged_output(node, declared)? {
                 return Ok(outer);
             }
             let inner = Box::new(self.built(node, declared)?);

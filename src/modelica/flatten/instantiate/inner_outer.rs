@@ -8,7 +8,6 @@ use super::instance::NodeKind;
 use super::instance::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::BaseType;
 use crate::flatten::errors::{
     ILLEGAL_PREFIX, MISSING_INNER, PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME,
 };
@@ -78,13 +77,7 @@ impl Instantiation<'_> {
             Some(dims) => dims == variable.dims,
             None => rank == variable.dims.len(),
         };
-        let is_same = match (expanded.shape.base(), &variable.base) {
-            (Some(BaseType::Enumeration(one)), BaseType::Enumeration(other)) => {
-                one.literals == other.literals
-            }
-            (Some(one), other) => one == *other,
-            (None, _) => false,
-        };
+        let is_same = expanded.shape.base().is_some_and(|base| base == variable.base);
         if is_same && same_sizes {
             return Ok(());
         }

@@ -7,6 +7,7 @@ use crate::fault;
 use crate::flatten::errors::NOT_SUPPORTED;
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::Ident;
 use crate::syntax::ast::{
     CausalityPrefix, Equation, EquationKind, Expression, ExpressionKind, Section,
@@ -51,7 +52,9 @@ impl Instantiation<'_> {
         }
         Ok(())
     }
+}
 
+impl Classes<'_> {
     /// Whether an `inner outer` component is one variable with the one further out: an output of
     /// a state, whose definitions on all levels are merged.
     pub(crate) fn is_merged_output(
@@ -75,14 +78,14 @@ impl Instantiation<'_> {
 
     /// Whether the class that holds an instance makes it a state of a state machine.
     fn is_state(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
-        let one = &self.classes.tree.nodes[node.0];
+        let one = &self.tree.nodes[node.0];
         let Some(holder) = one.parent else { return Ok(false) };
         let last = one.path.rsplit('.').next().unwrap_or_default();
         let name = Ident::new(last.split('[').next().unwrap_or_default());
-        let Some(scope) = self.classes.tree.scope_of(holder) else { return Ok(false) };
-        let elements = self.classes.elements(scope)?;
+        let Some(scope) = self.tree.scope_of(holder) else { return Ok(false) };
+        let elements = self.elements(scope)?;
         Ok(elements.lineage().any(|context| {
-            self.classes.text(context).sections().iter().any(|section| match section {
+            self.text(context).sections().iter().any(|section| match section {
                 Section::Equations { equations, .. } => names_state(equations, name),
                 _ => false,
             })

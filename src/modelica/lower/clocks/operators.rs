@@ -12,7 +12,7 @@ use crate::lower::dae::VariableKind;
 use crate::lower::equation::Equation;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::lower::expressions::{Array, ClockedCall, Lowered};
-use crate::lower::real_values::is_real;
+use crate::lower::scalar_types::{is_boolean, is_real, is_whole};
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, VarId};
 
@@ -290,12 +290,12 @@ impl Builder<'_> {
         let second = second.or_else(|| call.at(usize::MAX, "resolution"));
         let second = second.or_else(|| call.at(usize::MAX, "startInterval"));
         let second = second.map(scalar).transpose()?;
-        let base = if self.is_boolean(first) {
+        let base = if is_boolean(&self.dae, first) {
             let zero = self.dae.pool.constant(0.0);
             let condition = self.condition_of_clock(first, span)?;
             Base::Event(condition, second.unwrap_or(zero))
         } else if second.is_some() || call.at(usize::MAX, "intervalCounter").is_some() || {
-            self.is_whole(first)
+            is_whole(&self.dae, first)
         } {
             self.rational_clock(first, second, span)?
         } else {
@@ -386,23 +386,6 @@ impl Builder<'_> {
         self.clocks.equations.push(Equation::new(a, b, span));
     }
 
-    fn is_boolean(&self, e: Expr) -> bool {
-        match self.dae.pool.node(e) {
-            Node::Variable(v) => self.dae.variable(*v).base == BaseType::Boolean,
-            Node::Relation(..) | Node::And(..) | Node::Or(..) | Node::Not(..) => true,
-            Node::If(_, a, _) => self.is_boolean(*a),
-            _ => false,
-        }
-    }
-
-    fn is_whole(&self, e: Expr) -> bool {
-        match self.dae.pool.node(e) {
-            Node::Variable(v) => self.dae.variable(*v).base == BaseType::Integer,
-            Node::Constant(number) => number.0.fract() == 0.0,
-            _ => !is_real(&self.dae, e),
-        }
-    }
-
     /// The variable that an expression is, or a new one that is equal to it.
     fn variable_for(&mut self, e: Expr, name: &str, span: Span) -> VarId {
         let is_variable = |kind| {
@@ -421,7 +404,8 @@ impl Builder<'_> {
             scalar_of_nothing(&format!("{name}[{number}]"), VariableKind::Unknown, span);
         if !is_real(&self.dae, e) && !self.dae.varies(e) {
             variable.kind = VariableKind::Discrete;
-            variable.base = if self.is_boolean(e) { BaseType::Boolean } else { BaseType::Integer };
+            variable.base =
+                if is_boolean(&self.dae, e) { BaseType::Boolean } else { BaseType::Integer };
         }
         let variable = self.dae.declare_variable(variable);
         let left = self.dae.pool.variable(variable);

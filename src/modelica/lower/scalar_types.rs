@@ -1,4 +1,4 @@
-//! Which expressions have Real values.
+//! The types of scalar expressions of the system.
 
 use super::dae::{Dae, VariableKind};
 use crate::flatten::BaseType;
@@ -35,4 +35,23 @@ pub(crate) fn is_real(dae: &Dae, e: Expr) -> bool {
         }
     }
     false
+}
+
+/// Whether the value of an expression is Boolean.
+pub(in crate::lower) fn is_boolean(dae: &Dae, e: Expr) -> bool {
+    match dae.pool.node(e) {
+        Node::Variable(v) => dae.variable(*v).base == BaseType::Boolean,
+        Node::Relation(..) | Node::And(..) | Node::Or(..) | Node::Not(..) => true,
+        Node::If(_, a, _) => is_boolean(dae, *a),
+        _ => false,
+    }
+}
+
+/// Whether the value of an expression is an Integer.
+pub(in crate::lower) fn is_whole(dae: &Dae, e: Expr) -> bool {
+    match dae.pool.node(e) {
+        Node::Variable(v) => dae.variable(*v).base == BaseType::Integer,
+        Node::Constant(number) => number.0.fract() == 0.0,
+        _ => !is_real(dae, e),
+    }
 }
