@@ -30,7 +30,7 @@ mod variable;
 mod vectorization;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use call::Arguments;
 pub use declaration::{Given, declare};

@@ -147,6 +147,10 @@ impl TypesOfNames for &Types<'_> {
         Some(self.named(reference)?.base.clone())
     }
 
+    fn rank(&mut self, e: &Expression) -> Option<usize> {
+        self.rank_of(e)
+    }
+
     fn of_function(
         &mut self,
         function: &ComponentReference,

@@ -70,16 +70,7 @@ pub(crate) fn sizes_of<N: SizesOfNames>(names: &mut N, e: &Expression) -> Option
             };
             Some(std::iter::once(Some(elements.len())).chain(inner).collect())
         }
-        ExpressionKind::ArrayIteration { element, indices } => {
-            let mut sizes = Vec::with_capacity(indices.len());
-            for index in indices {
-                sizes.push(*sizes_of(names, index.range.as_ref()?)?.first()?);
-            }
-            // The last iterator is the outer one (MLS §10.4.1).
-            sizes.reverse();
-            sizes.extend(element_sizes(names, element, indices)?);
-            Some(sizes)
-        }
+        ExpressionKind::ArrayIteration { element, indices } => iterated(names, element, indices),
         ExpressionKind::Matrix(rows) => matrix(names, rows),
         ExpressionKind::Range { .. } => match length_in_literals(e) {
             Some(length) => Some(vec![Some(length)]),
@@ -94,6 +85,22 @@ pub(crate) fn sizes_of<N: SizesOfNames>(names: &mut N, e: &Expression) -> Option
         }
         _ => None,
     }
+}
+
+/// The sizes of an array constructor with iterators.
+fn iterated<N: SizesOfNames>(
+    names: &mut N,
+    element: &Expression,
+    indices: &[ForIndex],
+) -> Option<Sizes> {
+    let mut sizes = Vec::with_capacity(indices.len());
+    for index in indices {
+        sizes.push(*sizes_of(names, index.range.as_ref()?)?.first()?);
+    }
+    // The last iterator is the outer one (MLS §10.4.1).
+    sizes.reverse();
+    sizes.extend(element_sizes(names, element, indices)?);
+    Some(sizes)
 }
 
 /// The length of a range such as `1:3` or `0:0.1:1`.
@@ -259,6 +266,9 @@ fn of_call<N: SizesOfNames>(
     arguments: &Arguments,
 ) -> Option<Sizes> {
     if !arguments.iterators.is_empty() {
+        if function.as_ident().is_some_and(|name| name == "array") {
+            return iterated(names, arguments.positional.first()?, &arguments.iterators);
+        }
         // A sum of arrays has their sizes (MLS §10.3.4.1), which its iterators may decide.
         let element = element_sizes(names, arguments.positional.first()?, &arguments.iterators);
         return element.is_none_or(|sizes| sizes.is_empty()).then(Vec::new);

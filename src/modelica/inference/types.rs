@@ -4,7 +4,7 @@ use super::operators::{ResultType, result_type};
 use crate::functions::{self, TypeRule};
 use crate::name::Ident;
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex,
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex, Operation,
     UnaryOperator,
 };
 
@@ -36,6 +36,12 @@ pub(crate) trait TypesOfNames {
         function: &ComponentReference,
         arguments: &Arguments,
     ) -> Option<Option<Self::Type>>;
+    /// How many dimensions an expression has, where it is known and matters: a matrix of Integers to
+    /// a power has Integers (MLS §10.6.8), an Integer to a power is a Real.
+    fn rank(&mut self, e: &Expression) -> Option<usize> {
+        let _ = e;
+        None
+    }
     /// The type of a component of a record.
     fn of_component(&mut self, record: &Self::Type, name: Ident) -> Option<Self::Type> {
         let _ = (record, name);
@@ -55,7 +61,7 @@ pub(crate) fn chain_types<N: TypesOfNames>(names: &mut N, e: &Expression) -> Vec
     let mut types = vec![walk.type_of(first)];
     for one in operations {
         let left = types.last().cloned().flatten();
-        types.push(walk.of_operation(one.operator, left, one.right));
+        types.push(walk.of_operation(&one, left));
     }
     types
 }
@@ -103,9 +109,7 @@ impl<N: TypesOfNames> Walk<'_, N> {
             ExpressionKind::Binary { .. } => {
                 let (first, operations) = e.chain();
                 let first = self.type_of(first);
-                operations
-                    .into_iter()
-                    .fold(first, |left, one| self.of_operation(one.operator, left, one.right))
+                operations.iter().fold(first, |left, one| self.of_operation(one, left))
             }
             ExpressionKind::If { branches, otherwise } => {
                 self.joined_type(branches.iter().map(|(_, value)| value).chain([&**otherwise]))
@@ -159,18 +163,20 @@ impl<N: TypesOfNames> Walk<'_, N> {
         result
     }
 
-    fn of_operation(
-        &mut self,
-        operator: BinaryOperator,
-        left: Option<N::Type>,
-        right: &Expression,
-    ) -> Option<N::Type> {
-        match result_type(operator) {
+    fn of_operation(&mut self, one: &Operation<'_>, left: Option<N::Type>) -> Option<N::Type> {
+        match result_type(one.operator) {
             ResultType::Boolean => elementary(Elementary::Boolean),
-            ResultType::Real => elementary(Elementary::Real),
+            ResultType::Real => {
+                let is_integer = left.as_ref().is_some_and(|left| is(left, Elementary::Integer));
+                let may_be_matrix = is_integer && one.operator == BinaryOperator::Power;
+                match may_be_matrix && self.names.rank(one.left) == Some(2) {
+                    true => left,
+                    false => elementary(Elementary::Real),
+                }
+            }
             ResultType::OfOperands => {
-                let all = joined(left?, self.type_of(right)?)?;
-                let is_text = operator == BinaryOperator::Add && is(&all, Elementary::String);
+                let all = joined(left?, self.type_of(one.right)?)?;
+                let is_text = one.operator == BinaryOperator::Add && is(&all, Elementary::String);
                 (is_number(&all) || is_text).then_some(all)
             }
         }

@@ -46,6 +46,9 @@ mod used_variables;
 mod varying_strings;
 mod when;
 
+#[cfg(test)]
+mod tests;
+
 pub(crate) use build::{derivative_of, scalar_of_nothing};
 pub use dae::*;
 pub(crate) use default_values::fold_parameters;

@@ -547,3 +547,15 @@ fn sizes_of_calls_follow_their_arguments() {
     assert_eq!([run.last("y[2]"), run.last("z[3,1]")], [2.0, 7.0]);
     assert_eq!([run.last("n[1]"), run.last("n[2]")], [3.0, 5.0]);
 }
+
+/// A matrix of Integers to a power is made of products, an Integer to a power is a Real (MLS §10.6.7,
+/// §10.6.8).
+#[test]
+fn powers_of_matrices_of_integers_are_integers() {
+    accepted("model M constant Integer A[2, 2] = {{1, 2}, {3, 4}}; Integer B[2, 2] = A^2; end M;");
+    refused("model M constant Integer a = 2; Integer b = a^2; end M;", "type-mismatch");
+    refused(
+        "model M constant Integer A[2, 2] = {{1, 2}, {3, 4}}; Integer B[2, 2] = A .^ 2; end M;",
+        "type-mismatch",
+    );
+}

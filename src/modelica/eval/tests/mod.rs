@@ -4,6 +4,7 @@ mod builtins;
 mod expressions;
 mod functions;
 mod host;
+pub(crate) mod inference;
 mod robustness;
 mod scalars;
 mod shipped;
