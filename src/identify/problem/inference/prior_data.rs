@@ -33,7 +33,8 @@ pub fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
             let posterior = variance.sqrt() / unit;
             if posterior > DOMINATES * sd {
                 let [before, after] = [sd, posterior].map(|own| significant(own, 3));
-                let sentence = match before == after {
+                // The weights of outputs are estimates, which may add more than the data take away.
+                let sentence = match before == after || posterior >= sd {
                     true => format!(
                         "The estimate of {name} comes only from its prior: the data do not reduce \
                          the standard deviation {before} of {what}."

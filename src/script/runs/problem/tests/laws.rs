@@ -390,3 +390,13 @@ fn profiles_of_estimated_deviations_end_beside_data_that_are_missed() {
         assert!((ratio / quantile - 1.0).abs() < 0.1, "{misses}: {ratio} {quantile}");
     }
 }
+
+/// Data whose deviation is estimated may leave a standard deviation larger than that of the prior.
+#[test]
+fn a_prior_that_the_data_do_not_narrow_is_said_so() {
+    let found =
+        fitted(", prior = { mean = 2.2, sd = 0.1 } }", "sigma = \"estimate\"", &[1.6, 2.2, 2.8]);
+    let text = found.text();
+    assert!(found.parameters[0].deviation.unwrap() > 0.1, "{text}");
+    assert!(text.contains("the data do not reduce the standard deviation 0.1 of p"), "{text}");
+}
