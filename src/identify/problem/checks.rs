@@ -84,7 +84,7 @@ pub(crate) fn residual_findings(
     resolved: bool,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
-    if statistics.freedom < 1.0 {
+    if statistics.spread.freedom < 1.0 {
         return findings;
     }
     let repeated = |k: usize| statistics.repeated.iter().any(|pair| pair.0 == k);
@@ -137,7 +137,7 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
             rows: &series.rows,
             first: start,
             has_sigma: series.sigma.is_known(),
-            robust: statistics.robust || !series.is_normal(),
+            robust: statistics.spread.robust || !series.is_normal(),
             is_likelihood: matches!(
                 ErrorModel::of(problem),
                 ErrorModel::Computed | ErrorModel::Estimated
@@ -517,11 +517,11 @@ fn chi_square(
     outliers: &[usize],
     alpha: f64,
 ) -> Option<Finding> {
-    if ErrorModel::of(problem) != ErrorModel::Known || !statistics.believed {
+    if ErrorModel::of(problem) != ErrorModel::Known || !statistics.spread.believed {
         return None;
     }
     let value = statistics.chi_square(problem, outliers);
-    let freedom = statistics.freedom - outliers.len() as f64;
+    let freedom = statistics.spread.freedom - outliers.len() as f64;
     let [lower, upper] = chi_square_tails(value, freedom);
     let p = 2.0 * lower.min(upper);
     if p.is_nan() || p >= alpha {
@@ -687,7 +687,7 @@ fn unlike_series(
     }
     let total: f64 = statistics.residuals.iter().map(|r| r * r).sum();
     let n = statistics.residuals.len() as f64;
-    let share = statistics.freedom / n;
+    let share = statistics.spread.freedom / n;
     let unlike = |own: &&Own<'_>| {
         let square: f64 = own.residuals.iter().map(|r| r * r).sum();
         let count = own.residuals.len() as f64;

@@ -1,5 +1,6 @@
 //! The simulated curve between the measured points, for drawing.
 
+use super::solution::CurveKind;
 use super::{Experiment, ModelSimulator, Observation, Series, Simulate, Solution, SolvedSeries};
 use crate::elementary;
 use crate::sim::TimeBudget;
@@ -33,7 +34,10 @@ fn draw<'a>(
         let count = (experiment.observations.len() - experiment.deviations).min(rest.len());
         let (own, others) = rest.split_at_mut(count);
         if let Some(curves) = curves(experiment, values, hurry) {
-            let pairs = own.iter_mut().zip(curves).filter(|(series, _)| !series.has_no_curve);
+            let pairs = own
+                .iter_mut()
+                .zip(curves)
+                .filter(|(series, _)| series.curve_kind != CurveKind::Missing);
             pairs.for_each(|(series, curve)| series.curve = scaled(series, curve));
         }
         rest = others;
@@ -45,7 +49,7 @@ fn scaled(series: &SolvedSeries, mut curve: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let scale = series.scale.as_ref().map_or(1.0, |own| own.value);
     let offset = series.offset.as_ref().map_or(0.0, |own| own.value);
     curve.iter_mut().for_each(|point| point[1] = scale * point[1] + offset);
-    if series.is_logarithmic {
+    if series.curve_kind == CurveKind::Logarithms {
         curve.retain(|point| point[1] > 0.0);
         curve.iter_mut().for_each(|point| point[1] = elementary::ln(point[1]));
     }

@@ -200,7 +200,7 @@ impl Within {
 fn deviations(jacobian: &[Vec<f64>], statistics: &Statistics, k: usize) -> Vec<f64> {
     let mut columns = statistics.weighted(jacobian);
     columns.remove(k);
-    let found = uncertainty_given(&columns, statistics.variance);
+    let found = uncertainty_given(&columns, statistics.spread.variance);
     let mut all =
         found.map_or_else(|| vec![f64::INFINITY; columns.len()], |found| found.standard_deviations);
     all.insert(k, f64::INFINITY);
@@ -246,7 +246,7 @@ impl<'a> Scan<'a> {
         k: usize,
         statistics: &Statistics,
     ) -> Result<Option<Scan<'a>>, Fault> {
-        let scale = [statistics.freedom, statistics.quantile_of_squares()];
+        let scale = [statistics.spread.freedom, statistics.quantile_of_squares()];
         let Some(mut refit) = Refit::new(problem, evaluation).filter(|_| scale[0] >= 1.0) else {
             return Ok(None);
         };

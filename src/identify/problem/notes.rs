@@ -66,7 +66,7 @@ pub fn findings(
 /// Points against parameters.
 fn about_count(solution: &Solution, run: &Run, statistics: &Statistics) -> Option<Finding> {
     let (points, parameters) = (run.problem.n_points(), solution.parameters.len());
-    let few = statistics.freedom < 1.0;
+    let few = statistics.spread.freedom < 1.0;
     if !few && statistics.uncertainty.is_some() {
         return None;
     }
@@ -79,14 +79,14 @@ fn about_count(solution: &Solution, run: &Run, statistics: &Statistics) -> Optio
     let sentence = format!(
         "{points} points for {parameters} parameters leave no degrees of freedom: {}. Any model \
          with that many parameters fits such data; measure more points or fix parameters.",
-        match statistics.believed && statistics.uncertainty.is_some() {
+        match statistics.spread.believed && statistics.uncertainty.is_some() {
             true =>
                 "the standard errors are based only on the given sigma, and no test is possible",
             false => "there are no standard errors, and no test is possible",
         }
     );
     let finding = Finding::new(kind, sentence).severity(Severity::Serious);
-    Some(finding.statistic(statistics.freedom, 1.0))
+    Some(finding.statistic(statistics.spread.freedom, 1.0))
 }
 
 fn about_effects(
@@ -301,14 +301,14 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
         first += series.x.len();
         // Priors are compared with the data elsewhere.
         let is_prior = !series.is_data();
-        if series.x.len() != 1 || is_prior || statistics.freedom < 1.0 {
+        if series.x.len() != 1 || is_prior || statistics.spread.freedom < 1.0 {
             continue;
         }
         let mut rest = statistics.weighted(&statistics.jacobian);
         for column in &mut rest {
             column.remove(place);
         }
-        let Some(without) = uncertainty_given(&rest, statistics.variance) else { continue };
+        let Some(without) = uncertainty_given(&rest, statistics.spread.variance) else { continue };
         for (k, free) in run.problem.parameters.iter().enumerate() {
             let ratio = without.standard_deviations[k] / all.standard_deviations[k];
             if ratio.is_nan() || ratio <= DOMINANT {
@@ -491,7 +491,7 @@ fn determined_function(
     let function = group.function.as_ref()?;
     let values: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
     let (value, gradient) = function.at(&values);
-    let reach = statistics.quantile * statistics.error_of(&gradient)?;
+    let reach = statistics.spread.quantile * statistics.error_of(&gradient)?;
     let name = |k: usize| solution.parameters[k].name.as_str();
     let digits = digits_of(reach, value.abs());
     let interval = ends([value - reach, value + reach], value);
@@ -520,7 +520,7 @@ fn determined(group: &NonIdentifiable, solution: &Solution, statistics: &Statist
             value =
                 if is_product { value * elementary::powf(own, *part) } else { value + part * own };
         }
-        let reach = statistics.quantile * statistics.error_of(&weights)?;
+        let reach = statistics.spread.quantile * statistics.error_of(&weights)?;
         let [low, high] = match (is_product, is_ratio) {
             (true, true) => [-reach, reach].map(|reach| value * elementary::exp(reach)),
             (true, false) => [-reach, reach].map(|reach| value + value.abs() * reach),

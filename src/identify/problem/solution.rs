@@ -321,6 +321,18 @@ pub struct PredictedAhead {
     pub points: Vec<[f64; 3]>,
 }
 
+/// What the curve of a series goes through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum CurveKind {
+    /// The simulated values.
+    #[default]
+    Simulated,
+    /// Their logarithms, which are compared.
+    Logarithms,
+    /// The points are no simulated values, so that no curve goes through them.
+    Missing,
+}
+
 /// A series with its simulation.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SolvedSeries {
@@ -376,12 +388,9 @@ pub struct SolvedSeries {
     /// Predictions over several samples, where they were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ahead: Option<PredictedAhead>,
-    /// Whether logarithms are compared.
+    /// What its curve is.
     #[serde(skip)]
-    pub(super) is_logarithmic: bool,
-    /// Whether the points are no simulated values, so that no curve goes through them.
-    #[serde(skip)]
-    pub(super) has_no_curve: bool,
+    pub(super) curve_kind: CurveKind,
 }
 
 impl SolvedSeries {
@@ -417,8 +426,7 @@ impl SolvedSeries {
             script: Vec::new(),
             simulation: Vec::new(),
             ahead: None,
-            is_logarithmic: false,
-            has_no_curve: false,
+            curve_kind: CurveKind::Simulated,
         };
         solved.measure();
         solved
@@ -443,7 +451,7 @@ impl SolvedSeries {
     pub fn predict(&mut self, predictions: &[[f64; 2]]) {
         self.points.iter_mut().zip(predictions).for_each(|(point, own)| point[2] = own[0]);
         self.curve.clear();
-        self.has_no_curve = true;
+        self.curve_kind = CurveKind::Missing;
         self.measure();
         if !self.deviations.is_empty() {
             self.deviations = predictions.iter().map(|own| own[1]).collect();

@@ -4,6 +4,7 @@ use super::effects::{Effect, Finite, effect};
 use super::ending::{self, Ending, EndingKind};
 use super::explicit::Explicit;
 use super::inference::errors_of_coefficients;
+use super::solution::CurveKind;
 use super::statistics::distributions::chi_square_tails;
 use super::verdicts::Judged;
 use super::{
@@ -60,8 +61,8 @@ impl Solution {
             condition: statistics.rank.condition.filter(|condition| condition.is_finite()),
             likelihood: Likelihood {
                 error_model: ErrorModel::of(problem),
-                degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
-                quantile: Some(statistics.quantile).filter(|own| own.is_finite()),
+                degrees_of_freedom: Some(statistics.spread.freedom).filter(|own| own.is_finite()),
+                quantile: Some(statistics.spread.quantile).filter(|own| own.is_finite()),
                 chi_square: chi_square(problem, &statistics),
                 negative_log_likelihood: negative_log_likelihood(run, &statistics),
                 covariances: covariances(run, &statistics, &simulated),
@@ -122,7 +123,9 @@ impl Solution {
             rest = others;
             own.is_data().then(|| {
                 let mut solved = SolvedSeries::new(own, simulated);
-                solved.is_logarithmic = run.problem.inference.logarithmic.contains(&number);
+                if run.problem.inference.logarithmic.contains(&number) {
+                    solved.curve_kind = CurveKind::Logarithms;
+                }
                 if let Some(own) = &scaled {
                     [solved.scale, solved.offset] = own.solved(number, &[]);
                 }
@@ -294,7 +297,9 @@ fn solved_series(
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
-        solved.is_logarithmic = problem.inference.logarithmic.contains(&number);
+        if problem.inference.logarithmic.contains(&number) {
+            solved.curve_kind = CurveKind::Logarithms;
+        }
         if let Some(own) = &statistics.explicit {
             [solved.scale, solved.offset] = own.solved(number, &errors);
         }
@@ -351,11 +356,11 @@ fn chi_square(problem: &super::Problem, statistics: &Statistics) -> Option<ChiSq
     let is_given = |own: &super::Series| {
         own.is_normal() && own.sigma.is_known() && !matches!(own.sigma, Sigma::Variable(_))
     };
-    if !statistics.believed || !problem.series.iter().all(is_given) {
+    if !statistics.spread.believed || !problem.series.iter().all(is_given) {
         return None;
     }
     let value = statistics.chi_square(problem, &[]);
-    let freedom = statistics.freedom;
+    let freedom = statistics.spread.freedom;
     let [_, probability] = chi_square_tails(value, freedom);
     (freedom > 0.0).then_some(ChiSquare { value, freedom, probability })
 }
@@ -372,7 +377,7 @@ fn covariances(
 
 fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     run.evaluation.scales()?;
-    if statistics.robust {
+    if statistics.spread.robust {
         return None;
     }
     if ErrorModel::of(&run.problem).is_likelihood() {

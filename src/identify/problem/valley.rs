@@ -84,7 +84,8 @@ fn interval(
 ) -> Option<[f64; 2]> {
     let value = |k: usize| solution.parameters[k].value;
     let (_, derivatives) = form.at(value(k), value(l));
-    let half = statistics.quantile * derivatives[0].abs() * statistics.deviation_with(k, l)?;
+    let half =
+        statistics.spread.quantile * derivatives[0].abs() * statistics.deviation_with(k, l)?;
     let Grounds { profiles, .. } = &solution.grounds;
     let along = profiles.iter().filter(|(own, _)| *own == k || *own == l);
     let values: Vec<f64> = along

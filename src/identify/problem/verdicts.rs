@@ -93,7 +93,7 @@ impl Solution {
     ) -> Result<Vec<Judged>, Fault> {
         let n = self.parameters.len();
         (self.grounds.freedom, self.grounds.quantile) =
-            (statistics.freedom, statistics.quantile_of_squares());
+            (statistics.spread.freedom, statistics.quantile_of_squares());
         if statistics.uncertainty.is_none() {
             return Ok(vec![Judged::Nothing; n]);
         }
@@ -236,7 +236,7 @@ impl Solution {
             quantile: self.grounds.quantile,
             budget,
         };
-        let can_be_made = statistics.freedom >= 1.0 && statistics.repeated.is_empty();
+        let can_be_made = statistics.spread.freedom >= 1.0 && statistics.repeated.is_empty();
         let found = match can_be_made {
             true => profiles(&run.problem, &run.evaluation, &known, open)?,
             false => None,
@@ -301,7 +301,10 @@ impl Solution {
 
     /// Those of these parameters whose linear interval does not hold.
     fn curved(&mut self, run: &Run, statistics: &Statistics, which: &[usize]) -> Vec<usize> {
-        if statistics.robust || statistics.freedom < 1.0 || !statistics.repeated.is_empty() {
+        if statistics.spread.robust
+            || statistics.spread.freedom < 1.0
+            || !statistics.repeated.is_empty()
+        {
             return Vec::new();
         }
         // Where parameters stand at ends of their ranges, with these held.
@@ -314,7 +317,7 @@ impl Solution {
                 let direction: Vec<f64> = (0..n)
                     .map(|j| {
                         let own = found.correlations[j * n + k] * found.standard_deviations[j];
-                        if own.is_finite() { side * statistics.quantile * own } else { 0.0 }
+                        if own.is_finite() { side * statistics.spread.quantile * own } else { 0.0 }
                     })
                     .collect();
                 let (place, part) = self.within_ranges(&direction);
@@ -324,7 +327,7 @@ impl Solution {
         }
         let rows = run.evaluation.simulate_all(&places);
         self.effort.simulations_for_statistics += rows.len() as u64;
-        let allowed = elementary::powi(statistics.quantile, 2) * statistics.variance;
+        let allowed = elementary::powi(statistics.spread.quantile, 2) * statistics.spread.variance;
         // What a constraint forbids tells nothing of the model.
         let is_forbidden = |at: usize| {
             run.problem.inference.constraints.iter().any(|own| own.violation(&places[at]) > 0.0)
@@ -482,7 +485,7 @@ fn linear_with(
     for (_, effect) in effects {
         let Effect::Finite(finite) = effect else { continue };
         for fit in &finite.within {
-            let half = statistics.quantile * fit.left * fit.deviations[k];
+            let half = statistics.spread.quantile * fit.left * fit.deviations[k];
             let [low, high] = linear_interval(free, fit.values[k], Some([half; 2]))?;
             hull = [hull[0].min(low), hull[1].max(high)];
         }
@@ -511,7 +514,7 @@ fn is_without_noise(run: &Run, statistics: &Statistics) -> bool {
         measured.zip(&statistics.weights).map(|(y, w)| elementary::powi(w * y, 2)).sum();
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
     let is_from_solver = square.sqrt() <= FROM_THE_SOLVER * run.problem.noise * size.sqrt();
-    is_from_solver && !statistics.believed && !run.conclusion.resolved
+    is_from_solver && !statistics.spread.believed && !run.conclusion.resolved
 }
 
 /// By how much the weighted sum of squares of a simulation, as the statistics have it, or twice the

@@ -8,6 +8,7 @@
 //! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapters 5 and 6.
 
 use super::super::explicit::Explicit;
+use super::super::statistics::Spread;
 use super::super::{Evaluation, Problem, Statistics, limits};
 use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
@@ -97,7 +98,7 @@ impl Local {
         let relative = found.explicit.clone().zip(with_coefficients(&found));
         let gradient = found.gradient();
         let [residuals, scales] = found.reduced_points();
-        let Statistics { freedom, believed, variance, robust, .. } = found;
+        let Spread { freedom, believed, variance, robust, .. } = found.spread;
         if freedom <= 0.0 {
             return Err("there are not more points than parameters");
         }
@@ -134,7 +135,7 @@ impl Local {
             freedom,
             known: believed,
             robust,
-            quantile: found.quantile,
+            quantile: found.spread.quantile,
             freedom_of_quantile: found.freedom_of_points(),
             information,
             relative,
@@ -199,7 +200,7 @@ pub fn with_coefficients(found: &Statistics) -> Option<Information> {
         columns[a].iter().zip(&columns[b]).map(|(a, b)| a * b).sum()
     };
     let n = columns.len();
-    let gram = DMatrix::from_fn(n, n, |a, b| product(a, b) / found.variance);
+    let gram = DMatrix::from_fn(n, n, |a, b| product(a, b) / found.spread.variance);
     gram.iter().all(|value| value.is_finite()).then(|| Information::new(&gram, tolerance))
 }
 

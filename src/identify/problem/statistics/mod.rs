@@ -72,26 +72,11 @@ pub struct Statistics {
     /// For parameters that stand at an end of their range, 1 where the range lies above it and −1
     /// where below.
     pub(super) inward: Vec<Option<f64>>,
-    /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
-    /// Student's distribution, or of the normal one where sigma is given.
-    pub quantile: f64,
-    /// Points less the parameters that the data can determine; equal series count once.
-    pub freedom: f64,
+    /// What the variance of the errors is.
+    pub(crate) spread: Spread,
     /// Parameters that take no degree of freedom: those without any effect, and in groups that act only
     /// together those of which the others are made up for.
     open: usize,
-    /// Whether the deviations of the measurements are known and believed.
-    pub believed: bool,
-    /// v of the covariance v (JᵀJ)⁻¹ of the weighted sensitivities: 1 where sigma is believed, the
-    /// residual variance, or for robust fitness functions that of M-estimators.
-    pub variance: f64,
-    /// Whether the fitness is a robust one.
-    pub(crate) robust: bool,
-    /// Where some deviations are known and others estimated: what sensitivities of the points are
-    /// multiplied with, so that standard errors have the degrees of freedom of the estimated ones.
-    reduction: Option<Vec<f64>>,
-    /// The degrees of freedom of the quantile; infinite where it is that of the normal distribution.
-    freedom_of_quantile: f64,
     /// Weights of the points: reciprocal standard deviations where these are known or estimated.
     pub weights: Vec<f64>,
     /// Weighted residuals, measured less simulated.
@@ -130,8 +115,8 @@ impl Statistics {
     pub(super) fn limit_of_squares(&self) -> f64 {
         let rise = elementary::powi(self.quantile_of_squares(), 2);
         let points = self.residuals.len() as f64;
-        let relative = 1.0 + rise / self.freedom;
-        match (self.error_model, self.believed) {
+        let relative = 1.0 + rise / self.spread.freedom;
+        match (self.error_model, self.spread.believed) {
             (ErrorModel::Computed, true) => raised(self.searched, points, rise),
             (ErrorModel::Estimated, _) => {
                 raised(self.searched, points, points * elementary::ln(relative))
@@ -144,10 +129,10 @@ impl Statistics {
     /// What the root of the rise of the sum of squares is within the 95 % limit, in units of the
     /// residual variance.
     pub(super) fn quantile_of_squares(&self) -> f64 {
-        if self.believed || self.robust || self.is_mixed() {
-            return self.quantile;
+        if self.spread.believed || self.spread.robust || self.is_mixed() {
+            return self.spread.quantile;
         }
-        self.quantile * (self.variance * self.freedom / self.square).sqrt()
+        self.spread.quantile * (self.spread.variance * self.spread.freedom / self.square).sqrt()
     }
 
     /// The weighted sum of squares of the data, some points left out; equal series count once. A prior
@@ -180,14 +165,8 @@ impl Statistics {
             uncertainty: None,
             at_bounds: None,
             inward: Vec::new(),
-            quantile: f64::NAN,
-            freedom: 0.0,
+            spread: Spread::default(),
             open: 0,
-            believed: false,
-            variance: f64::NAN,
-            robust: false,
-            reduction: None,
-            freedom_of_quantile: f64::NAN,
             weights: data.weights.clone(),
             residuals: data.residuals.clone(),
             repeated,
@@ -256,10 +235,7 @@ impl Statistics {
             let groups = &self.rank.non_identifiable;
             AtBounds::of(own, groups, plain.as_deref(), &self.inward, variances)
         });
-        (self.quantile, self.freedom, self.variance) =
-            (spread.quantile, spread.freedom, spread.variance);
-        (self.believed, self.robust) = (spread.believed, spread.robust);
-        (self.reduction, self.freedom_of_quantile) = (spread.reduction, spread.freedom_of_quantile);
+        self.spread = spread;
     }
 
     /// Finds which parameters have no effect, and which act only together.
@@ -282,7 +258,7 @@ impl Statistics {
             let is_exact = problem.noise * self.fineness <= EXACT;
             rank.non_identifiable.retain(|group| is_exact || group.form != Form::Local);
         }
-        let rise = elementary::powi(self.quantile, 2) * self.variance;
+        let rise = elementary::powi(self.spread.quantile, 2) * self.spread.variance;
         let is_within =
             |row: &[f64]| rise_of_squares(problem, evaluation, data, (simulated, row)) <= rise;
         for group in rank.non_identifiable {
@@ -429,16 +405,24 @@ fn reduce(columns: &mut [Vec<f64>], reduction: Option<&[f64]>) {
 }
 
 /// What the variance of the errors is, and how it is known.
-struct Spread {
-    freedom: f64,
-    robust: bool,
-    believed: bool,
-    variance: f64,
-    /// Where some deviations are known and others estimated, [`freedom::Effective::reduction`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Spread {
+    /// Points less the parameters that the data can determine; equal series count once.
+    pub freedom: f64,
+    /// Whether the fitness is a robust one.
+    pub robust: bool,
+    /// Whether the deviations of the measurements are known and believed.
+    pub believed: bool,
+    /// v of the covariance v (JᵀJ)⁻¹ of the weighted sensitivities: 1 where sigma is believed, the
+    /// residual variance, or for robust fitness functions that of M-estimators.
+    pub variance: f64,
+    /// Where some deviations are known and others estimated: what sensitivities of the points are
+    /// multiplied with, so that standard errors have the degrees of freedom of the estimated ones.
     reduction: Option<Vec<f64>>,
-    /// The quantile of a 95 % interval.
-    quantile: f64,
-    /// Its degrees of freedom.
+    /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
+    /// Student's distribution, or of the normal one where sigma is given.
+    pub quantile: f64,
+    /// Its degrees of freedom; infinite where it is that of the normal distribution.
     freedom_of_quantile: f64,
 }
 
@@ -499,7 +483,7 @@ impl Statistics {
     pub(super) fn error_of(&self, weights: &[f64]) -> Option<f64> {
         let columns = self.reduced(&self.jacobian, &self.scales);
         self.uncertainty.as_ref()?;
-        error_of_combination(&columns, weights, self.variance, self.rank_tolerance)
+        error_of_combination(&columns, weights, self.spread.variance, self.rank_tolerance)
     }
 }
 
@@ -524,24 +508,28 @@ impl Statistics {
 
     fn reduced(&self, jacobian: &[Vec<f64>], scales: &Scales) -> Vec<Vec<f64>> {
         let mut columns = weighted(jacobian, scales);
-        reduce(&mut columns, self.reduction.as_deref());
+        reduce(&mut columns, self.spread.reduction.as_deref());
         columns
     }
 
     /// Whether some deviations are known and others estimated: neither is scaled by all residuals.
     pub(super) fn is_mixed(&self) -> bool {
-        self.reduction.is_some()
+        self.spread.reduction.is_some()
     }
 
     /// The variance of a measurement in units of its weight.
     pub(super) fn variance_of_points(&self) -> f64 {
-        if self.is_mixed() { 1.0 } else { self.variance }
+        if self.is_mixed() { 1.0 } else { self.spread.variance }
     }
 
     /// The degrees of freedom of the quantile where all outputs have one variance; further points add to
     /// them.
     pub(super) fn freedom_of_points(&self) -> f64 {
-        if self.is_mixed() || self.believed { self.freedom_of_quantile } else { self.freedom }
+        if self.is_mixed() || self.spread.believed {
+            self.spread.freedom_of_quantile
+        } else {
+            self.spread.freedom
+        }
     }
 
     /// Derivatives of half the weighted sum of squares by the parameters, with the other sign.
@@ -556,7 +544,7 @@ impl Statistics {
     /// others are known.
     pub(super) fn reduced_points(&self) -> [Vec<f64>; 2] {
         let mut points = [self.residuals.clone(), self.weights.clone()];
-        reduce(&mut points, self.reduction.as_deref());
+        reduce(&mut points, self.spread.reduction.as_deref());
         points
     }
 
@@ -580,14 +568,14 @@ impl Statistics {
                 .filter(|reach| reach.iter().all(|own| own.is_finite()));
         }
         let deviation = self.uncertainty.as_ref()?.standard_deviations[k];
-        Some([self.quantile * deviation; 2]).filter(|_| deviation.is_finite())
+        Some([self.spread.quantile * deviation; 2]).filter(|_| deviation.is_finite())
     }
 
     /// The standard error of parameter `k` with parameter `held` fixed.
     pub(super) fn deviation_with(&self, k: usize, held: usize) -> Option<f64> {
         let kept = (0..self.jacobian.len()).filter(|j| *j != held);
         let columns: Vec<Vec<f64>> = kept.map(|j| self.jacobian[j].clone()).collect();
-        let found = uncertainty_given(&self.weighted(&columns), self.variance)?;
+        let found = uncertainty_given(&self.weighted(&columns), self.spread.variance)?;
         let place = if k > held { k - 1 } else { k };
         Some(found.standard_deviations[place]).filter(|own| own.is_finite())
     }
@@ -602,12 +590,12 @@ impl Statistics {
         }
         let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
         let pull = ends.find(|end| end.parameter == k)?.pull;
-        if self.believed || self.robust || self.is_mixed() {
+        if self.spread.believed || self.spread.robust || self.is_mixed() {
             return Some(pull);
         }
         // Residuals at the end of a range contain the misfit that the end causes: an error estimated
         // from them makes any distance one of less than the root of the degrees of freedom.
-        let left = self.square - pull * pull * self.variance;
+        let left = self.square - pull * pull * self.spread.variance;
         Some(pull * (self.square / left.max(ROUNDING * self.square)).sqrt())
     }
 }

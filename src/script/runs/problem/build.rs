@@ -121,7 +121,7 @@ fn build_in(
     let file = &*file;
     if free.is_empty() {
         let fault = fault!(BAD_OPTION, "no parameter is estimated");
-        let place = file.places.at(&["parameters"]);
+        let place = file.context.places.at(&["parameters"]);
         return Err(vec![fault.help("give one a range: `k = { min = 0.1, max = 10 }`").at(place)]);
     }
     if file.fitness.is_none() || is_one_of(file, &[LOG_LIKELIHOOD]) {
@@ -158,8 +158,9 @@ fn build_in(
     adjusted(file, &mut problem, &logarithmic).map_err(alone)?;
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
-    let noise =
-        noise_test::Questions::of(file).at(file.places.at(&[PREDICTION_STEPS])).map_err(alone)?;
+    let noise = noise_test::Questions::of(file)
+        .at(file.context.places.at(&[PREDICTION_STEPS]))
+        .map_err(alone)?;
     let doubts = Doubts { undecided, readings: misread::all(&file.experiment), noise, rests };
     Ok(Built {
         problem,
@@ -240,13 +241,13 @@ fn prepared(
     } else {
         let bytes = session
             .read_bytes(&folder.join(&file.model))
-            .at(file.places.at(&["model"]))
+            .at(file.context.places.at(&["model"]))
             .map_err(alone)?;
         origins.add(format!("`{}`", file.model), &bytes);
     }
     set_file::read(session, file, unit.as_deref(), folder, (notes, origins))?;
     let file = &*file;
-    origins.add_problem(&file.table);
+    origins.add_problem(&file.table());
     let data = data_of(session, file, folder, (notes, origins))?;
     let mut free = free_parameters(file, &data).map_err(alone)?;
     let model = (file, unit.as_ref());
@@ -263,7 +264,7 @@ fn adjusted(
 ) -> Result<(), Diagnostic> {
     let series = logarithmic.iter().map(|own| own.0).collect();
     let seed = crate::ga::Mrg32k3a::new(&problem.seed).map(drop);
-    seed.at(file.places.at(&["seed"]))?;
+    seed.at(file.context.places.at(&["seed"]))?;
     let adjustments = super::inference::adjustments(file, &problem.parameters, series)?;
     let free: Vec<String> = problem.parameters.iter().map(|own| own.name.clone()).collect();
     adjust(problem, adjustments).map_err(|(cause, fault)| {
@@ -274,7 +275,7 @@ fn adjusted(
             }
             Cause::Prior(parameter) => {
                 let name = free[parameter].split('@').next().unwrap_or_default();
-                file.places.at(&["parameters", name, "prior"])
+                file.context.places.at(&["parameters", name, "prior"])
             }
         })
     })
@@ -296,7 +297,7 @@ fn load_models(
 ) -> Result<(), Vec<Diagnostic>> {
     let mut loaded = Vec::new();
     for (number, models) in file.files.iter().enumerate() {
-        let place = file.places.at(&["files", &number.to_string()]);
+        let place = file.context.places.at(&["files", &number.to_string()]);
         let own = session.load_path(&folder.join(models));
         let placed = |errors: Vec<Diagnostic>| -> Vec<Diagnostic> {
             errors.into_iter().map(|own| own.or_at(place)).collect()
@@ -304,18 +305,19 @@ fn load_models(
         loaded.extend(own.map_err(placed)?);
     }
     if file.model.is_empty() {
-        file.model = only_class(&loaded).at(file.places.at(&["files"])).map_err(alone)?;
+        file.model = only_class(&loaded).at(file.context.places.at(&["files"])).map_err(alone)?;
     }
     Ok(())
 }
 
 /// Refuses a model whose class is not loaded, at its place.
 fn check_class(session: &mut Session, file: &ProblemFile) -> Result<(), Vec<Diagnostic>> {
-    let base = Base::of(&file.model, file.places.text(&["model"])).map_err(|error| vec![error])?;
+    let base =
+        Base::of(&file.model, file.context.places.text(&["model"])).map_err(|error| vec![error])?;
     if session.find_class(&base.class)? {
         return Ok(());
     }
-    let place = file.places.at(&["model"]);
+    let place = file.context.places.at(&["model"]);
     let name = base.class.to_string();
     let fault = match name.strip_suffix(".mo") {
         Some(class) => fault!(UNKNOWN_CLASS, "there is no class `{name}`")
@@ -365,7 +367,7 @@ fn experiments(
         let table = rows.as_ref().unwrap_or(&own.table);
         let source = experiment::Source { file, entry, label, segment, number, table, free };
         if !file.noise.is_empty() && (unit.is_some() || entry.spectrum.is_some()) {
-            return Err(vec![no_noise(unit.is_some()).at(file.places.at(&["noise"]))]);
+            return Err(vec![no_noise(unit.is_some()).at(file.context.places.at(&["noise"]))]);
         }
         let built = match (unit, &entry.spectrum) {
             (Some(unit), None) => imported::build(&source, (session, unit), notes)?,
@@ -468,7 +470,7 @@ fn objectives(
     let sigmas_are_known = series.iter().all(|series| series.sigma.is_known());
     let mut objectives = Vec::new();
     for (number, name) in names.into_iter().enumerate() {
-        let place = file.places.at(&["fitness", &number.to_string()]);
+        let place = file.context.places.at(&["fitness", &number.to_string()]);
         let one = |fault: Fault| vec![fault.at(place)];
         let entry = registry::find("fitness function", FITNESSES, &name);
         if entry.is_err() && own_fitness::is_function(session, &name) {
@@ -517,7 +519,7 @@ fn likelihood_alone(
              not normal minimize the negative log-likelihood and cannot be combined with another fitness";
             help: "remove `fitness`, or give sigmas as numbers and errors that are normal"
         );
-        return Err(fault.at(file.places.at(&["fitness"])));
+        return Err(fault.at(file.context.places.at(&["fitness"])));
     }
     let likelihood = likelihood(series, noise).map_err(|(name, fault)| {
         let has_it = |entry: &&ExperimentEntry| entry.outputs.contains_key(&name);
@@ -543,7 +545,7 @@ fn assemble(
             BAD_OPTION,
             "`seconds` of the stop conditions is {seconds}; it must be positive"
         );
-        return Err(fault.at(file.places.at(&["stop", "seconds"])));
+        return Err(fault.at(file.context.places.at(&["stop", "seconds"])));
     }
     let stop = Stop {
         generations: stop.generations,
@@ -555,7 +557,7 @@ fn assemble(
     Ok(Problem {
         title: title(file),
         model: file.model.clone(),
-        text: file.text.clone(),
+        text: file.context.text.clone(),
         descriptions: Descriptions::default(),
         parameters,
         series,
@@ -603,7 +605,7 @@ fn on_its_scale(
                  published";
                 help: "remove `scale`, or use `genetic`"
             );
-            return Err(fault.at(file.places.at(&["parameters", name, "scale"])));
+            return Err(fault.at(file.context.places.at(&["parameters", name, "scale"])));
         }
     }
     parameters.iter_mut().for_each(|free| free.logarithmic = false);
@@ -617,7 +619,7 @@ fn free_parameters(
 ) -> Result<Vec<Free>, Diagnostic> {
     let mut free: Vec<Free> = Vec::new();
     for (name, entry) in &file.parameters {
-        let place = file.places.parameter(name);
+        let place = file.context.places.parameter(name);
         let Role::Free { range, logarithmic } = entry.role(name).at(place)? else { continue };
         let unit = entry.unit.clone().unwrap_or_default();
         let fitted = data.iter().filter(|own| !own.entry.validation);

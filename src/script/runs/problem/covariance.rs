@@ -32,7 +32,7 @@ impl<'a> Stated<'a> {
     fn of(file: &'a ProblemFile, entry: &'a ExperimentEntry, label: &str) -> Option<Stated<'a>> {
         let (places, own, usual) = match (&entry.covariance, &file.covariance) {
             (Some(own), _) => (&entry.places, own, label.to_owned()),
-            (None, Some(own)) => (&file.places, own, "all experiments".to_owned()),
+            (None, Some(own)) => (&file.context.places, own, "all experiments".to_owned()),
             (None, None) => return None,
         };
         let table = match own {
@@ -304,7 +304,7 @@ fn same_instants(
 pub(super) fn check_all(file: &ProblemFile, series: &[Series]) -> Result<(), Diagnostic> {
     let place = || {
         let own = file.experiment.iter().find(|own| own.covariance.is_some());
-        own.map_or(file.places.at(&["covariance"]), |own| own.places.at(&["covariance"]))
+        own.map_or(file.context.places.at(&["covariance"]), |own| own.places.at(&["covariance"]))
     };
     let mut known: Vec<(&str, Vec<(usize, &str)>)> = Vec::new();
     for own in series {

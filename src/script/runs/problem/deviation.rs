@@ -243,12 +243,12 @@ pub(super) fn declare_parameter(
     (file, own): (&ProblemFile, &[String]),
     enclosing: &mut EnclosingClass,
 ) -> Result<String, Diagnostic> {
-    let place = file.places.parameter(name);
+    let place = file.context.places.parameter(name);
     let value = match role {
         Role::Free { range: [low, high], .. } => format!("{:e}", 0.5 * (low + high)),
         Role::Fixed(value) => print::expression(&literal(value, name, place).at(place)?),
         Role::Tied(text) => {
-            let read = expression(text, file.places.text(&["parameters", name, "tied"]));
+            let read = expression(text, file.context.places.text(&["parameters", name, "tied"]));
             let mut tree = read.map_err(|error| error.or_at(place))?;
             Renamed(own).expression(&mut tree);
             print::expression(&tree)

@@ -95,7 +95,7 @@ pub fn estimate(
     }
     let more = MoreTimes { every: options.every, until: options.until };
     let mut with = |filtering: Filtering| {
-        file.filtering = filtering;
+        file.context.filtering = filtering;
         prepared(session, (&mut file, path), options)
     };
     let (chosen, values, notes) = with(Filtering::Smoothed(more))?;

@@ -206,8 +206,8 @@ impl Source<'_> {
             false => CompiledModel::new(&self.file.model, program.clone()),
         };
         let has_states = !program.sorted().states.is_empty();
-        let base =
-            Base::of(&self.file.model, self.file.places.text(&["model"])).map_err(|e| vec![e])?;
+        let base = Base::of(&self.file.model, self.file.context.places.text(&["model"]))
+            .map_err(|e| vec![e])?;
         let class_stop = session.classes.library.definition(&base.class);
         let class_stop = class_stop.and_then(|class| flatten::experiment(&class).stop_time);
         let subject = Subject {
@@ -377,8 +377,8 @@ impl Source<'_> {
         notes: &mut Notes,
     ) -> Result<Class, Vec<Diagnostic>> {
         let Source { file, entry, segment, .. } = *self;
-        let base =
-            Base::of(&file.model, file.places.text(&["model"])).map_err(|error| vec![error])?;
+        let base = Base::of(&file.model, file.context.places.text(&["model"]))
+            .map_err(|error| vec![error])?;
         let here = (self.number, entry.places.at(&["data"]));
         let mut enclosing = EnclosingClass::default();
         let of_any_deviation = deviation::parameters_of(file);

@@ -55,18 +55,28 @@ pub(super) struct ProblemFile {
     pub bootstrap: Option<BootstrapEntry>,
     /// Markov chains.
     pub posterior: Option<PosteriorEntry>,
-    /// What its process noise is compared with.
+    /// What is known of it beside its entries.
     #[serde(skip)]
+    pub context: Context,
+}
+
+/// What is known of a problem beside its entries.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Context {
+    /// What its process noise is compared with.
     pub filtering: Filtering,
     /// Where its entries are written.
-    #[serde(skip)]
     pub places: Places,
-    /// All its entries, in their order.
-    #[serde(skip)]
-    pub table: toml::Table,
     /// The text for the report.
-    #[serde(skip)]
     pub text: String,
+}
+
+impl ProblemFile {
+    /// All entries, in their order.
+    pub(super) fn table(&self) -> toml::Table {
+        // What could be read once can be read again.
+        self.context.text.parse().unwrap_or_default()
+    }
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
@@ -526,18 +536,17 @@ pub(super) struct PosteriorEntry {
 pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnostic> {
     let mut file: ProblemFile =
         toml::from_str(text).map_err(|error| refusal::refusal(source, text, &error))?;
-    // What could be read once can be read again.
-    file.table = text.parse().unwrap_or_default();
-    refusal::printable(&file.table).map_err(|fault| fault.at(Span::new(source, 0, 0)))?;
-    file.text = text.to_owned();
-    file.places = Places::of(source, text);
-    if file.noise.is_empty() && file.table.contains_key("noise") {
+    let places = Places::of(source, text);
+    file.context = Context { places, text: text.to_owned(), ..Context::default() };
+    let table = file.table();
+    refusal::printable(&table).map_err(|fault| fault.at(Span::new(source, 0, 0)))?;
+    if file.noise.is_empty() && table.contains_key("noise") {
         let fault = fault!(BAD_OPTION, "`[noise]` names no state")
             .help("write a state with its noise, `T = \"estimate\"`, or remove the table");
-        return Err(fault.at(file.places.at(&["noise"])));
+        return Err(fault.at(file.context.places.at(&["noise"])));
     }
     for (number, entry) in file.experiment.iter_mut().enumerate() {
-        let own = file.places.within(&["experiment", &number.to_string()]);
+        let own = file.context.places.within(&["experiment", &number.to_string()]);
         entry.places = own.cloned().unwrap_or_default();
     }
     Ok(file)
@@ -552,7 +561,8 @@ pub(super) fn of_table(table: toml::Table) -> Result<ProblemFile, Diagnostic> {
     let file = ProblemFile::deserialize(table.clone());
     let file = file.map_err(|error| refusal::refusal(SourceId::NONE, "", &error))?;
     refusal::printable(&table).map_err(|fault| fault.at(Span::NONE))?;
-    Ok(ProblemFile { text: table.to_string(), table, ..file })
+    let context = Context { text: table.to_string(), ..Context::default() };
+    Ok(ProblemFile { context, ..file })
 }
 
 impl ColumnEntry {

@@ -51,20 +51,23 @@ pub(super) fn filtered(
             times: own.x.clone(),
             values: own.y.clone(),
             sigma: sigma(output, own),
-            is_used: !matches!(file.filtering, Filtering::Simulated(_) | Filtering::Ahead(..)),
+            is_used: !matches!(
+                file.context.filtering,
+                Filtering::Simulated(_) | Filtering::Ahead(..)
+            ),
         })
         .collect();
     let start = experiment.settings.start;
     note_certain_start(file, (&noise, &measured, start), &experiment.name, notes);
-    let place = file.places.at(&["noise"]);
-    let more = match &file.filtering {
+    let place = file.context.places.at(&["noise"]);
+    let more = match &file.context.filtering {
         Filtering::Smoothed(more) | Filtering::Simulated(more) | Filtering::Ahead(_, more) => {
             times(entry, rows, start, *more).at(Span::NONE).map_err(one)?
         }
         Filtering::Filtered | Filtering::WithoutNoise => Vec::new(),
     };
     experiment.settings.stop = more.iter().copied().fold(experiment.settings.stop, f64::max);
-    let what = (&noise[..], &measured[..], purpose(&file.filtering, &experiment.name));
+    let what = (&noise[..], &measured[..], purpose(&file.context.filtering, &experiment.name));
     let found = filter::filtered(session, class, what, (start, &more), place)?;
     let program = found.translated.program.clone();
     experiment.model = Arc::new(CompiledModel::new(&file.model, program.clone()));
@@ -151,7 +154,7 @@ fn refuse_unknown(file: &ProblemFile, experiment: &Experiment) -> Result<(), Vec
     let names = model.names();
     let near = suggest::did_you_mean(name, names.iter().map(String::as_str));
     let fault = fault!(BAD_OPTION, "`{}` has no variable `{name}`", file.model);
-    Err(vec![fault.help_if(near).at(file.places.at(&["noise", name]))])
+    Err(vec![fault.help_if(near).at(file.context.places.at(&["noise", name]))])
 }
 
 /// The standard deviation of the measurements of an output.

@@ -42,7 +42,7 @@ pub(super) fn unit(
     let mut methods: Vec<bool> =
         methods.map(|method| method == Some(imported::CO_SIMULATION)).collect();
     methods.dedup();
-    let place = file.places.at(&["model"]);
+    let place = file.context.places.at(&["model"]);
     let method = match methods.as_slice() {
         [false] | [] => None,
         [true] => Some(imported::CO_SIMULATION),
@@ -165,7 +165,7 @@ fn values(
         Setting { file, entry, label, segment, free, of_deviations: &[], of_any_deviation: &[] };
     let (mut given, mut names) = (Given::default(), Vec::new());
     for (name, parameter) in &file.parameters {
-        let place = file.places.parameter(name);
+        let place = file.context.places.parameter(name);
         match parameter.role(name).at(place)? {
             Role::Free { .. } if dynamics::is_delay(file, name) => {}
             Role::Free { .. } => {
@@ -193,9 +193,10 @@ fn values(
         set(&mut given, unit, name, value).at(place)?;
     }
     let layout = unit.layout(&given.numbers);
-    let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(file.places.at(&["model"])))?;
+    let layout =
+        layout.map_err(|why| fault!(BAD_FMU, "{why}").at(file.context.places.at(&["model"])))?;
     for (_, name) in &names {
-        check_free(unit, &layout, name).at(file.places.parameter(name))?;
+        check_free(unit, &layout, name).at(file.context.places.parameter(name))?;
     }
     Ok((given, names))
 }

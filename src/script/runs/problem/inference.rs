@@ -40,10 +40,10 @@ pub(super) fn inference(
         Some(BandsEntry::Variables(names)) => (true, names.clone()),
     };
     for (number, name) in band_variables.iter().enumerate() {
-        let place = file.places.at(&["bands", &number.to_string()]);
+        let place = file.context.places.at(&["bands", &number.to_string()]);
         known("bands", name, experiments).at(place)?;
     }
-    let of = |name: &str| file.places.within(&[name]).cloned().unwrap_or_default();
+    let of = |name: &str| file.context.places.within(&[name]).cloned().unwrap_or_default();
     let design = file.design.as_ref();
     let design = design.map(|entry| self::design(entry, &of("design"), experiments)).transpose()?;
     let bootstrap = file.bootstrap.as_ref();
@@ -78,7 +78,7 @@ pub(super) fn adjustments(
     let mut priors = Vec::new();
     for (name, entry) in &file.parameters {
         let Some(prior) = &entry.prior else { continue };
-        let place = file.places.at(&["parameters", name, "prior"]);
+        let place = file.context.places.at(&["parameters", name, "prior"]);
         let of_experiments = format!("{name}@");
         let own = |free: &Free| free.name == *name || free.name.starts_with(&of_experiments);
         let places: Vec<usize> =
@@ -95,7 +95,7 @@ pub(super) fn adjustments(
     }
     let names: Vec<String> = free.iter().map(|free| free.name.clone()).collect();
     let constraints = file.constraints.iter().enumerate().map(|(number, text)| {
-        let place = file.places.at(&["constraints", &number.to_string()]);
+        let place = file.context.places.at(&["constraints", &number.to_string()]);
         super::constraint::constraint(text, &names).at(place)
     });
     let constraints = constraints.collect::<Result<Vec<Constraint>, Diagnostic>>()?;

@@ -175,7 +175,7 @@ pub fn check(
         Ok(built) => built.notes,
         Err(errors) => return errors,
     };
-    let place = file.places.at(&["experiment", "0", "data"]);
+    let place = file.context.places.at(&["experiment", "0", "data"]);
     notes.into_iter().filter_map(|note| note.warning(place)).collect()
 }
 
@@ -222,10 +222,10 @@ fn solve_stated(
         let most = searches::MOST;
         let fault =
             fault!(BAD_OPTION, "`searches` is {count}"; help: "write a number from 1 to {most}");
-        return Err(vec![fault.at(file.places.at(&["searches"]))]);
+        return Err(vec![fault.at(file.context.places.at(&["searches"]))]);
     }
     let options = RunOptions { searches: options.searches.or(file.searches), ..options.clone() };
-    let method = file.places.at(&["method"]);
+    let method = file.context.places.at(&["method"]);
     let mut again = |session: &mut Session, change: Change<'_>| {
         // What is to be said of the problem has been said.
         let is_quiet = std::mem::replace(&mut session.options.quiet, true);

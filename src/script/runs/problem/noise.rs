@@ -97,7 +97,7 @@ fn own_parameters(file: &ProblemFile) -> Result<Vec<Own>, Diagnostic> {
     let mut all: Vec<Own> = Vec::new();
     for (state, entry) in &file.noise {
         if let Density::Estimated { range, start } =
-            entry.density(state).at(file.places.at(&["noise", state]))?
+            entry.density(state).at(file.context.places.at(&["noise", state]))?
         {
             let (name, in_class) = (format!("{NOISE_OF}{state}"), own_name("noise of", state));
             all.push(Own { name, in_class, range, start, of: Subject::State(state.clone()) });
@@ -144,7 +144,7 @@ pub(super) fn free(file: &ProblemFile) -> Result<Vec<Free>, Diagnostic> {
 
 fn place(file: &ProblemFile, of: &Subject) -> Span {
     match of {
-        Subject::State(state) => file.places.at(&["noise", state]),
+        Subject::State(state) => file.context.places.at(&["noise", state]),
         Subject::Output(output) => {
             let has_it = |entry: &&ExperimentEntry| entry.outputs.contains_key(output);
             let entry = file.experiment.iter().find(has_it);
@@ -278,16 +278,17 @@ pub(super) fn of_states(
     let one = |(state, own): (&String, &NoiseEntry)| {
         let unit = experiment.model.unit(state).unwrap_or_default();
         let usual = change(series, state, &unit).map_or(1.0, |(size, time)| size / time.sqrt());
-        let (density, scale) = match own.density(state).at(file.places.at(&["noise", state]))? {
-            Density::Estimated { .. } if file.filtering == Filtering::WithoutNoise => {
-                ("0.0".to_owned(), 0.0)
-            }
-            Density::Fixed(value) => (format!("{value:e}"), value),
-            Density::Estimated { range, .. } => {
-                let scale = range.map_or(usual, |[min, max]| (min * max).abs().sqrt());
-                (own_name("noise of", state), scale)
-            }
-        };
+        let (density, scale) =
+            match own.density(state).at(file.context.places.at(&["noise", state]))? {
+                Density::Estimated { .. } if file.context.filtering == Filtering::WithoutNoise => {
+                    ("0.0".to_owned(), 0.0)
+                }
+                Density::Fixed(value) => (format!("{value:e}"), value),
+                Density::Estimated { range, .. } => {
+                    let scale = range.map_or(usual, |[min, max]| (min * max).abs().sqrt());
+                    (own_name("noise of", state), scale)
+                }
+            };
         Ok(Noise { state: state.clone(), density, scale, initial: own.initial() })
     };
     file.noise.iter().map(one).collect()

@@ -74,7 +74,7 @@ pub(super) fn compare(
     let names = &questions.densities[..];
     let mut without = None;
     if !names.is_empty() {
-        let change = |file: &mut ProblemFile| file.filtering = Filtering::WithoutNoise;
+        let change = |file: &mut ProblemFile| file.context.filtering = Filtering::WithoutNoise;
         let other = again(session, Change::Entries(&change))?;
         let processors = session.world.processors();
         let starts = wider(solution);
@@ -89,8 +89,9 @@ pub(super) fn compare(
             solution.findings.push(finding);
         }
     }
-    let change =
-        |file: &mut ProblemFile| file.filtering = Filtering::Simulated(MoreTimes::default());
+    let change = |file: &mut ProblemFile| {
+        file.context.filtering = Filtering::Simulated(MoreTimes::default())
+    };
     let other = again(session, Change::Entries(&change))?;
     solution.effort.simulations_for_statistics += 1;
     let values: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
@@ -111,7 +112,7 @@ impl All {
         filtering: &Filtering,
         again: &mut Again<'_>,
     ) -> Result<All, Fault> {
-        let change = |file: &mut ProblemFile| file.filtering = filtering.clone();
+        let change = |file: &mut ProblemFile| file.context.filtering = filtering.clone();
         let made = again(session, Change::Entries(&change))?;
         let fitted = with_states(made.experiments, made.states, made.problem.series);
         let (experiments, series): (Vec<_>, Vec<_>) = made.validation.into_iter().unzip();

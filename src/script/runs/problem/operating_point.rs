@@ -23,7 +23,7 @@ pub(super) fn check(file: &ProblemFile) -> Result<(), Diagnostic> {
     if !asks || has_spectra {
         return Ok(());
     }
-    let place = file.places.at(&["design", "operating_points"]);
+    let place = file.context.places.at(&["design", "operating_points"]);
     Err(fault!(BAD_OPTION, "operating points are those of spectra, and none was measured")
         .help("remove them, or add an experiment with `spectrum`")
         .at(place))
@@ -43,7 +43,7 @@ pub(super) fn spectra(
     let points = source.file.design.iter().flat_map(|design| &design.operating_points).enumerate();
     let mut one = |(number, point): (usize, &OperatingPointEntry)| {
         let way = ["design", "operating_points", &number.to_string()];
-        let places = source.file.places.within(&way).cloned().unwrap_or_default();
+        let places = source.file.context.places.within(&way).cloned().unwrap_or_default();
         let entry = changed(source.entry, point, &places).map_err(|error| vec![error])?;
         let label = format!("{}, {}", source.label, described(point));
         let own = Source { entry: &entry, label: &label, ..*source };

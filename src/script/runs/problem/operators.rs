@@ -32,12 +32,12 @@ pub(super) fn method(
     let entry = registry::find("method", METHODS, requested);
     let entry = *entry
         .as_ref()
-        .map_err(|fault| vec![fault.clone().at(file.places.at(&["method", "name"]))])?;
+        .map_err(|fault| vec![fault.clone().at(file.context.places.at(&["method", "name"]))])?;
     let mut options = Options::default();
     file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
     let mut chosen = Vec::new();
     for (kind, entry) in file.method.operators() {
-        let place = file.places.at(&["method", kind]);
+        let place = file.context.places.at(&["method", kind]);
         match entry {
             OperatorEntry::Frequency(value)
                 if operators::kind(kind).is_some_and(|kind| kind.frequency.is_some()) =>
@@ -49,7 +49,7 @@ pub(super) fn method(
     }
     let one = |fault: Fault, span: Span| vec![fault.at(span)];
     let mut method =
-        made(entry, &options).map_err(|fault| one(fault, file.places.at(&["method"])))?;
+        made(entry, &options).map_err(|fault| one(fault, file.context.places.at(&["method"])))?;
     // One after the other, so that what is wrong has a place.
     for (kind, place, choice) in chosen {
         if !registry::choices(entry).contains(&kind) {

@@ -73,7 +73,7 @@ impl Setting<'_> {
     ) -> Result<Vec<(usize, String)>, Diagnostic> {
         let mut names = Vec::new();
         for (name, parameter) in &self.file.parameters {
-            let place = self.file.places.parameter(name);
+            let place = self.file.context.places.parameter(name);
             let role = parameter.role(name).at(place)?;
             if self.of_deviations.contains(name) {
                 let free = matches!(role, Role::Free { .. });
@@ -131,7 +131,7 @@ impl Setting<'_> {
             let value = INSIDE.map(|part| self.free[*free].value(part));
             let value = value.into_iter().find(|value| *value != 0.0);
             if let (0.0, Some(value)) = (program.parameters()[at].default, value) {
-                let place = self.file.places.parameter(name);
+                let place = self.file.context.places.parameter(name);
                 enclosing.bind(name, Expression::new(ExpressionKind::Real(value), place), place);
             }
         }
@@ -177,7 +177,7 @@ impl Setting<'_> {
 
     /// The expression of a tied parameter.
     fn tied(&self, name: &str, text: &str) -> Result<Expression, Diagnostic> {
-        let places = &self.file.places;
+        let places = &self.file.context.places;
         let read = enclosing_class::expression(text, places.text(&["parameters", name, "tied"]));
         let mut read = read.map_err(|error| error.or_at(places.parameter(name)))?;
         QuotedNames.expression(&mut read);
@@ -274,7 +274,7 @@ pub(super) fn check_free(
         if matches!(base, Some(BaseType::Real)) {
             continue;
         }
-        let error = not_free(name, base, model).at(file.places.parameter(name));
+        let error = not_free(name, base, model).at(file.context.places.parameter(name));
         return Err(vec![match final_place(session, name, model)? {
             Some(place) => error.related(place, "declared final here"),
             None => error,
@@ -311,7 +311,7 @@ pub(super) fn check_taken(
         let is_own = model.program.find_parameter(&deviation::parameter(name)).is_ok();
         let is_value = !parameter.initial && !dynamics::is_delay(file, name) && !is_own;
         let value = parameter.fixed.as_ref().filter(|_| is_value)?;
-        Some((name, value, file.places.parameter(name)))
+        Some((name, value, file.context.places.parameter(name)))
     });
     let set =
         entry.set.values.iter().map(|(name, value)| (name, value, entry.places.at(&["set", name])));
@@ -437,7 +437,7 @@ pub(super) fn check_initial(
     model: &Translated,
 ) -> Result<(), Vec<Diagnostic>> {
     let estimated = file.parameters.iter().filter(|(_, parameter)| parameter.initial);
-    let estimated = estimated.map(|(name, _)| (name, file.places.parameter(name)));
+    let estimated = estimated.map(|(name, _)| (name, file.context.places.parameter(name)));
     let set = entry.start.keys().map(|name| (name, entry.places.at(&["start", name])));
     let states: Vec<String> = model.state_names().map(ToString::to_string).collect();
     let is_other = |name: &String| {

@@ -39,11 +39,11 @@ pub fn petab(session: &mut Session, path: &Path) -> Result<Vec<(String, String)>
     let built = build(session, &mut file, path)?;
     let model = match &file.files[..] {
         [own] => path.parent().unwrap_or(Path::new("")).join(own),
-        _ => return Err(vec![several_files().at(file.places.at(&["files"]))]),
+        _ => return Err(vec![several_files().at(file.context.places.at(&["files"]))]),
     };
     let model = session
         .read_bytes(&model)
-        .map_err(|_| vec![several_files().at(file.places.at(&["files"]))])?;
+        .map_err(|_| vec![several_files().at(file.context.places.at(&["files"]))])?;
     let series: Vec<&Series> = built.problem.series.iter().filter(|own| own.is_data()).collect();
     let starts: Vec<f64> = built.experiments.iter().map(|own| own.settings.start).collect();
     let tables = Tables::of(&file, &series, &starts).map_err(|error| vec![error])?;
@@ -62,7 +62,7 @@ fn unsayable(what: &str) -> Fault {
 
 /// Refuses entries that have no counterpart, at their places.
 fn check(file: &ProblemFile) -> Result<(), Diagnostic> {
-    let at = |key: &str| file.places.at(&[key]);
+    let at = |key: &str| file.context.places.at(&[key]);
     let refuse = |what: &str, place: Span| Err(unsayable(what).at(place));
     if !file.noise.is_empty() {
         return refuse("process noise", at("noise"));
@@ -85,7 +85,10 @@ fn check(file: &ProblemFile) -> Result<(), Diagnostic> {
     }
     for (name, own) in &file.parameters {
         if own.initial {
-            return refuse("an initial value that is estimated", file.places.parameter(name));
+            return refuse(
+                "an initial value that is estimated",
+                file.context.places.parameter(name),
+            );
         }
     }
     file.experiment.iter().try_for_each(check_experiment)
@@ -173,7 +176,7 @@ impl Tables {
         let mut tables = Tables::default();
         let (mut tied, mut own_in_each) = (Vec::new(), Vec::new());
         for (name, entry) in &file.parameters {
-            let place = file.places.parameter(name);
+            let place = file.context.places.parameter(name);
             match entry.role(name).at(place)? {
                 Role::Free { range, .. } if entry.per_experiment => {
                     own_in_each.push((name, entry, range));
@@ -195,7 +198,7 @@ impl Tables {
             let mut set = tied.clone();
             for (name, parameter, range) in &own_in_each {
                 let own = format!("{}_in_{id}", tables.identifiers.of(name));
-                let place = file.places.parameter(name);
+                let place = file.context.places.parameter(name);
                 tables.free(own.clone(), parameter, *range).at(place)?;
                 tables.added.push(own.clone());
                 set.push(((*name).clone(), own));

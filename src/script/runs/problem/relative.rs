@@ -80,7 +80,7 @@ pub(super) fn check(
             BAD_OPTION,
             "scales and offsets cannot be estimated together with process noise"
         );
-        return Err(fault.help(AS_PARAMETER).at(file.places.at(&["noise"])));
+        return Err(fault.help(AS_PARAMETER).at(file.context.places.at(&["noise"])));
     }
     let key = if scaling.scale.is_some() { "scale" } else { "offset" };
     let name = &series.y_name;
@@ -186,7 +186,7 @@ pub(super) fn check_all(
                 "scales and offsets are estimated by least squares, not with `{name}`";
                 help: "minimize `sum_of_squares`, or remove `scale` and `offset` of the outputs"
             );
-            return Err(fault.at(file.places.at(&["fitness"])));
+            return Err(fault.at(file.context.places.at(&["fitness"])));
         }
     }
     kept.iter().try_for_each(|series| check_kept(file, series, fitted))

@@ -68,7 +68,7 @@ impl Segment {
         let name = &self.name;
         let mut estimated = Vec::new();
         for (own, parameter) in file.parameters.iter().filter(|(_, entry)| entry.initial) {
-            let place = file.places.parameter(own);
+            let place = file.context.places.parameter(own);
             if let Role::Free { .. } = parameter.role(own).at(place)? {
                 estimated.push(own.as_str());
                 continue;
