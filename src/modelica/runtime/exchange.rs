@@ -1,7 +1,7 @@
 //! What another simulator asks of a system, as FMI does: event indicators, derivatives of chosen
 //! variables along chosen states, and what it has come to, as numbers.
 
-use super::execution::{read, run};
+use super::execution::run;
 use super::instants::Clock;
 use super::state::DelayState;
 use super::system::System;
@@ -167,7 +167,7 @@ impl System {
             own.registers[*register as usize] = 0.0;
         }
         run(&code.constants, &mut own.registers)?;
-        let mut y = vec![0.0; x.len() * (1 + code.n_columns())];
+        let mut y = vec![0.0; x.len() * (1 + code.n_directions())];
         y[..x.len()].copy_from_slice(x);
         own.total_derivatives(code, t, &y)
     }
@@ -183,13 +183,14 @@ impl System {
         t: f64,
     ) -> Result<DMatrix<f64>, Failure> {
         let mut own = self.differentiated(code);
-        let (n, m) = (own.n_differential(), code.n_columns());
+        let (n, m) = (own.n_differential(), code.n_directions());
         let mut y = vec![0.0; n * (1 + m)];
         own.initialize(t, &mut y)?;
         let below = own.total_derivatives(code, t, &y)?;
         let mut all = below.insert_rows(0, n, 0.0);
-        for column in 0..m {
-            all.view_mut((0, column), (n, 1)).copy_from_slice(&y[n * (1 + column)..][..n]);
+        for (direction, column) in code.directions.iter().enumerate() {
+            let derivatives = &y[n * (1 + direction)..][..n];
+            all.view_mut((0, *column), (n, 1)).copy_from_slice(derivatives);
         }
         Ok(all)
     }
@@ -210,17 +211,24 @@ impl System {
         t: f64,
         y: &[f64],
     ) -> Result<DMatrix<f64>, Failure> {
-        let (n, m) = (self.n_differential(), code.n_columns());
+        let (n, m) = (self.n_differential(), code.n_directions());
         let mut observed = vec![0.0; self.n_observed()];
         // This solves the loops, and finds the derivatives of their unknowns.
         self.observe(t, y, &mut observed)?;
-        let mut right_sides = vec![0.0; code.rhs.outputs.len()];
-        read(&code.rhs, &mut self.registers, &mut right_sides)?;
-        let (p, stride) = (observed.len() / (1 + m), right_sides.len() / m.max(1));
-        Ok(DMatrix::from_fn(n + p, m, |row, column| match row.checked_sub(n) {
-            None => right_sides[column * stride + row],
-            Some(variable) => observed[p * (1 + column) + variable],
-        }))
+        let mut right_sides = vec![0.0; code.rhs.len()];
+        self.right_sides_along(&mut right_sides)?;
+        let (columns, stride) = (code.n_parameters(), right_sides.len() / m.max(1));
+        let p = observed.len() / (1 + columns);
+        let mut all = DMatrix::zeros(n + p, columns);
+        for (direction, column) in code.directions.iter().enumerate() {
+            let derivatives = &right_sides[direction * stride..][..n];
+            all.view_mut((0, *column), (n, 1)).copy_from_slice(derivatives);
+        }
+        for column in 0..columns {
+            let derivatives = &observed[p * (1 + column)..][..p];
+            all.view_mut((n, column), (p, 1)).copy_from_slice(derivatives);
+        }
+        Ok(all)
     }
 
     /// What the system has come to.

@@ -32,6 +32,7 @@ impl System {
                 is_smooth: true,
                 before: vec![0.0; n],
                 after: vec![0.0; n],
+                space: code.rhs.space(&self.program.continuous.pattern),
                 refusal: None,
             })
         });
@@ -45,7 +46,7 @@ impl System {
     /// Copies the derivatives after y, if it holds any, to their registers.
     pub(super) fn load_derivatives(&mut self, y: &[f64]) {
         let Some(sensitivity) = &self.sensitivity else { return };
-        let n = y.len() / (sensitivity.code.n_columns() + 1);
+        let n = y.len() / (sensitivity.code.n_directions() + 1);
         if n != self.n_held() {
             return;
         }
@@ -65,6 +66,18 @@ impl System {
                 *s = self.registers[kept.registers[column] as usize];
             }
         }
+    }
+
+    /// Writes the derivatives of the right-hand side along all columns, everything loaded.
+    pub(super) fn right_sides_along(&mut self, out: &mut [f64]) -> Result<(), Failure> {
+        let Some(sensitivity) = &mut self.sensitivity else { return Ok(()) };
+        let Sensitivity { code, space, .. } = &mut **sensitivity;
+        let continuous = &self.program.continuous;
+        read(&continuous.jacobian, &mut self.registers, &mut space.jacobian)?;
+        read(&code.rhs.code, &mut self.registers, &mut space.entries)?;
+        let registers = &self.registers.registers;
+        code.rhs.write(&continuous.pattern, &code.unknowns, registers, space, out);
+        Ok(())
     }
 
     /// Derivatives of the solution of the initial system.
@@ -140,7 +153,7 @@ impl System {
             None => crossing,
         };
         run(&code.crossings.tape, &mut self.registers)?;
-        let m = code.n_columns();
+        let m = code.n_directions();
         let row = &code.crossings.outputs[function * (m + 1)..][..m + 1];
         let speed = self.registers[row[m] as usize];
         let mut is_smooth = true;

@@ -1,6 +1,6 @@
 //! What a system that carries forward sensitivities needs besides its registers.
 
-use crate::codegen::sensitivity::SensitivityCode;
+use crate::codegen::sensitivity::{RightSidesSpace, SensitivityCode};
 use std::sync::Arc;
 
 /// What a system that carries sensitivities needs besides its registers.
@@ -17,5 +17,6 @@ pub(super) struct Sensitivity {
     /// Derivatives of the states by time before the event, and after it.
     pub(super) before: Vec<f64>,
     pub(super) after: Vec<f64>,
+    pub(super) space: RightSidesSpace,
     pub(super) refusal: Option<&'static str>,
 }

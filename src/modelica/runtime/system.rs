@@ -582,7 +582,7 @@ impl Residual for System {
 
 impl Sensitive for System {
     fn n_directions(&self) -> usize {
-        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_columns())
+        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_directions())
     }
 
     fn directions(&self, out: &mut [f64]) {
@@ -591,8 +591,7 @@ impl Sensitive for System {
 
     fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load(t, y);
-        let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
-        read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+        self.right_sides_along(out).map_err(|f| self.refine(f))
     }
 }
 

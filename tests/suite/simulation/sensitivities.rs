@@ -12,6 +12,7 @@ use gapilib::internals::runtime::System;
 use gapilib::internals::script::models::simulation::flat_model;
 use gapilib::internals::sim::{Settings, Simulator, Trajectory, find_integrator};
 use proptest::prelude::*;
+use std::fmt::Write as _;
 use std::sync::Arc;
 
 /// An experiment on a model written out: outputs over time.
@@ -247,6 +248,54 @@ fn switches_at_states_and_discrete_variables() {
                 y = x^2 + 0.1*d + t1*time; end M;";
     let parameters = ["k", "limit", "a"];
     check(text, &parameters, &["x", "d", "y", "t1"], &[0.2, 0.8, 2.0], &[1.1, 0.45, 0.7], 1e-5);
+}
+
+/// Where many states have many parameters, right-hand sides are products with the Jacobian, and each
+/// step factorizes anew: a chain with feedback, an algebraic loop, parameters that depend on others,
+/// a discrete variable whose event moves, and an initial value.
+#[test]
+fn a_network_with_many_parameters() {
+    let states = 1..=30;
+    let names: Vec<String> = (1..=10).map(|k| format!("k{k}")).collect();
+    let mut text = "model M ".to_owned();
+    names.iter().for_each(|name| write!(text, "parameter Real {name} = 1; ").unwrap());
+    text += "parameter Real both = k1 + k2*k3; parameter Real first = 0.3*both + k4; Real z; \
+             discrete Real d(start = 0.1, fixed = true); ";
+    for i in states.clone() {
+        let start = if i == 1 { "first" } else { "0.2" };
+        write!(text, "Real x{i}(start = {start}, fixed = true); ").unwrap();
+    }
+    text += "equation z + 0.2*z^3 = k5*x7 + d; \
+             when x5 > 0.4*k6 then d = pre(d) + 0.5*k7*x2; end when; \
+             der(x1) = d + z*k8 - x1*both + 0.3*k9*x30; ";
+    for i in states.skip(1) {
+        let (before, k) = (i - 1, i % 10 + 1);
+        write!(text, "der(x{i}) = k{k}*x{before} - (1 + 0.1*k10*x{before})*x{i}*x{i}; ").unwrap();
+    }
+    text += "end M;";
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let p = [0.9, 0.8, 1.1, 0.7, 0.6, 1.2, 1.3, 0.4, 0.5, 1.4];
+    check(&text, &names, &["x1", "x5", "x30", "z", "d"], &[0.05, 1.0, 4.0], &p, 1e-5);
+}
+
+/// Along the parameters of what is observed alone nothing is integrated: `b` reaches the solution by
+/// `c`, `limit` by an event, `start` by an initial value.
+#[test]
+fn parameters_that_the_solution_does_not_depend_on_are_not_carried() {
+    let text = "model M parameter Real scale = 2; parameter Real b = 0.5; parameter Real offset = 0.3; \
+                parameter Real c = 2*b; parameter Real limit = 0.6; parameter Real start = 1; \
+                parameter Real shift = offset + 1; parameter Real unused = 1; \
+                Real x(start = start, fixed = true); Real y; Real z; discrete Real d(start = 0, fixed = true); \
+                equation der(x) = -c*x; when x < limit then d = 0.1; end when; \
+                y = scale*x + offset; z = shift*scale*x^2 + d; end M;";
+    let names = ["scale", "b", "offset", "limit", "start", "unused"];
+    let p = [1.5, 0.4, 0.2, 0.7, 1.1, 3.0];
+    check(text, &names, &["y", "z", "x"], &[0.1, 0.5, 2.0], &p, 1e-6);
+    let program = Program::compile(causalize(&flat(text)).unwrap()).unwrap();
+    let parameters = names.map(|name| program.find_parameter(name).unwrap());
+    let y = program.find_variable("y").unwrap();
+    let code = SensitivityCode::compile(&program, &parameters, &[y]).unwrap();
+    assert_eq!((code.n_parameters(), code.n_directions()), (6, 3));
 }
 
 #[test]

@@ -3,13 +3,14 @@
 
 use super::super::jacobian::{Forward, differentiate_sequence};
 use crate::causalize::{Assignment, Block, Loop};
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
+use rustc_hash::FxHashSet;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Carries derivatives through blocks in order; `made` gets the assignments that compute them.
-pub(in super::super) fn through_blocks(
+pub(in super::super) fn through_blocks<'b>(
     forward: &mut Forward<'_>,
-    blocks: &[Block],
+    blocks: impl IntoIterator<Item = &'b Block>,
     made: &mut Vec<Assignment>,
 ) {
     for block in blocks {
@@ -20,6 +21,37 @@ pub(in super::super) fn through_blocks(
             Block::Loop(torn) => through_loop(forward, torn, made),
         }
     }
+}
+
+/// The blocks that expressions need, in order.
+pub(super) fn needed_blocks<'b>(
+    pool: &Pool,
+    blocks: &'b [Block],
+    expressions: &[Expr],
+) -> Vec<&'b Block> {
+    let mut needed = FxHashSet::default();
+    let mut collection = VariableCollection::new(pool);
+    let mut add = |e: Expr, needed: &mut FxHashSet<VarId>| {
+        collection.add(e, |variable| {
+            needed.insert(variable);
+        });
+    };
+    expressions.iter().for_each(|e| add(*e, &mut needed));
+    let mut found = Vec::new();
+    for block in blocks.iter().rev() {
+        let of_loop: &[VarId] = match block {
+            Block::Loop(torn) => &torn.iteration,
+            Block::Assignment(_) | Block::Linear(_) => &[],
+        };
+        let mut own = block.assignments().iter().map(|a| a.variable).chain(of_loop.iter().copied());
+        if own.any(|variable| needed.contains(&variable)) {
+            block.assignments().iter().for_each(|a| add(a.value, &mut needed));
+            block.residuals().for_each(|residual| add(residual, &mut needed));
+            found.push(block);
+        }
+    }
+    found.reverse();
+    found
 }
 
 /// A torn loop r(z, …) = 0: ∂r/∂z · dz = −dr with z held, then everything that follows from z.

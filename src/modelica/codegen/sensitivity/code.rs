@@ -10,7 +10,9 @@ use super::super::registers::Registers;
 use super::super::sequence::{compile_continuous, compile_outputs, resolved, slice};
 use super::super::tape::Tape;
 use super::super::tape_builder::TapeBuilder;
-use super::blocks::through_blocks;
+use super::blocks::{needed_blocks, through_blocks};
+use super::directions::directions;
+use super::right_sides::{Kept, RightSides};
 use crate::causalize::{Assignment, Block};
 use crate::codegen::code::Outputs;
 use crate::codegen::sequence::{expressions, observing};
@@ -22,21 +24,17 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Unknowns times parameters beyond which the code would take longer to make than it saves.
-const LARGEST: usize = 20_000;
-
-/// A variable that keeps its value between steps, with the registers of its derivatives by column.
-#[derive(Debug, Clone)]
-pub(crate) struct Kept {
-    pub(crate) variable: VarId,
-    pub(crate) registers: Vec<Register>,
-}
-
-/// Code for the derivatives of a simulation by some parameters; a column for each of them.
+const LARGEST: usize = 2_000_000;
+/// Code for the derivatives of a simulation by some parameters; a column for each of those that the
+/// solution depends on.
 #[derive(Debug)]
 pub struct SensitivityCode {
     pub(crate) registers: Registers,
-    /// Positions of the parameters in [`Program::parameters`].
+    /// Positions of the parameters with columns in [`Program::parameters`].
     pub(crate) parameters: Vec<usize>,
+    /// Their positions among all that the code was made for.
+    pub(crate) directions: Vec<usize>,
+    n_parameters: usize,
     /// Unknowns of the integrator.
     pub(crate) unknowns: Vec<Kept>,
     /// For every previous value that has derivatives, where these come from and go to.
@@ -68,8 +66,8 @@ pub struct SensitivityCode {
     /// The derivatives of the states.
     pub(crate) speeds: Outputs,
     /// Right-hand sides of the sensitivity equations, column by column.
-    pub(crate) rhs: Outputs,
-    /// Observed variables, then their derivatives column by column.
+    pub(crate) rhs: RightSides,
+    /// Observed variables, then their derivatives by all parameters, one after another.
     pub(crate) observe: Outputs,
 }
 
@@ -85,22 +83,29 @@ impl SensitivityCode {
         parameters: &[usize],
         observed: &[usize],
     ) -> Result<Arc<SensitivityCode>, String> {
-        refuse(program, parameters)?;
         let mut pool = program.sorted.dae.pool.clone();
+        let directions = directions(program, &mut pool, parameters);
+        refuse(program, parameters, directions.len())?;
         let outputs = expressions(program, &mut pool, observed);
         // Those after the registers of a system that observes these variables.
         let mut registers = observing(program, &pool, &outputs).0;
-        Compiler::new(program, pool, &mut registers, parameters).compile(&outputs).map(Arc::new)
+        let parts = (parameters, directions);
+        Compiler::new(program, pool, &mut registers, parts).compile(&outputs).map(Arc::new)
     }
 
     /// Number of parameters.
-    pub fn n_columns(&self) -> usize {
+    pub fn n_parameters(&self) -> usize {
+        self.n_parameters
+    }
+
+    /// Number of parameters that the solution depends on.
+    pub fn n_directions(&self) -> usize {
         self.parameters.len()
     }
 }
 
 /// Why a model has no sensitivities.
-fn refuse(program: &Program, parameters: &[usize]) -> Result<(), String> {
+fn refuse(program: &Program, parameters: &[usize], n_columns: usize) -> Result<(), String> {
     let dae = &program.sorted.dae;
     if !program.sorted.selections.is_empty() {
         return Err("the model chooses its states at run time".to_owned());
@@ -115,12 +120,10 @@ fn refuse(program: &Program, parameters: &[usize]) -> Result<(), String> {
         let name = &dae.variable(previous.of).name;
         return Err(format!("the model uses `pre` of `{name}`, which is not discrete"));
     }
-    if program.continuous.unknowns.len() * parameters.len() > LARGEST {
-        return Err(format!(
-            "{} unknowns times {} parameters are more than {LARGEST}",
-            program.continuous.unknowns.len(),
-            parameters.len()
-        ));
+    let n_unknowns = program.continuous.unknowns.len();
+    if n_unknowns * n_columns > LARGEST {
+        let product = format!("{n_unknowns} unknowns times {n_columns} parameters");
+        return Err(format!("{product} are more than {LARGEST}"));
     }
     for at in parameters {
         let info = &program.parameters()[*at];
@@ -159,7 +162,12 @@ struct Compiler<'a> {
     program: &'a Program,
     pool: Pool,
     registers: &'a mut Registers,
-    parameters: &'a [usize],
+    /// Positions of those with columns.
+    parameters: Vec<usize>,
+    /// Their positions among all.
+    directions: Vec<usize>,
+    /// Positions of those without, whose columns come after the others in what is observed.
+    others: Vec<usize>,
     /// Derivatives of parameters by column.
     of_parameters: Vec<(VarId, BTreeMap<usize, Expr>)>,
     unknowns: Vec<Kept>,
@@ -174,9 +182,12 @@ impl<'a> Compiler<'a> {
         program: &'a Program,
         pool: Pool,
         registers: &'a mut Registers,
-        parameters: &'a [usize],
+        (all, directions): (&[usize], Vec<usize>),
     ) -> Compiler<'a> {
         let dae = &program.sorted.dae;
+        let parameters: Vec<usize> = directions.iter().map(|column| all[*column]).collect();
+        let others = (0..all.len()).filter(|column| directions.binary_search(column).is_err());
+        let others = others.map(|column| all[column]).collect();
         let mut keep = |variable: VarId| Kept {
             variable,
             registers: parameters.iter().map(|_| registers.fresh()).collect(),
@@ -197,7 +208,19 @@ impl<'a> Compiler<'a> {
         // New variables are numbered after all existing registers.
         let next = registers.len() as u32;
         let of_parameters = Vec::new();
-        Compiler { program, pool, registers, parameters, of_parameters, unknowns, kept, time, next }
+        Compiler {
+            program,
+            pool,
+            registers,
+            parameters,
+            directions,
+            others,
+            of_parameters,
+            unknowns,
+            kept,
+            time,
+            next,
+        }
     }
 
     fn compile(mut self, observed: &[Expr]) -> Result<SensitivityCode, String> {
@@ -220,7 +243,7 @@ impl<'a> Compiler<'a> {
         let observe = self.observe(observed);
         Ok(SensitivityCode {
             registers: self.registers.clone(),
-            parameters: self.parameters.to_vec(),
+            n_parameters: self.parameters.len() + self.others.len(),
             previous: self.previous(),
             cleared: self.cleared(),
             time: self.time.registers,
@@ -238,6 +261,8 @@ impl<'a> Compiler<'a> {
             rhs,
             observe,
             unknowns: self.unknowns,
+            parameters: self.parameters,
+            directions: self.directions,
         })
     }
 
@@ -361,7 +386,7 @@ impl<'a> Compiler<'a> {
     /// with theirs.
     fn dependent_parameters(&mut self, made: &mut Vec<Assignment>) -> Seeds {
         let one = self.pool.constant(1.0);
-        for (column, at) in self.parameters.iter().enumerate() {
+        for (column, at) in self.parameters.iter().chain(&self.others).enumerate() {
             let variable = self.program.parameters()[*at].variable;
             self.of_parameters.push((variable, BTreeMap::from([(column, one)])));
         }
@@ -426,13 +451,18 @@ impl<'a> Compiler<'a> {
             }
         }
         let seeds = self.seeds(seeds);
+        let kept = self.unknowns.iter().chain(&self.kept);
+        let set: Vec<&Kept> = kept.filter(|kept| assigned.contains(&kept.variable)).collect();
+        let values = reinits.iter().map(|reinit| reinit.value);
+        let needed: Vec<Expr> =
+            set.iter().map(|kept| self.pool.variable(kept.variable)).chain(values).collect();
+        let needed = needed_blocks(&self.pool, blocks, &needed);
         let mut forward = seeded(&mut self.pool, &mut self.next, seeds);
         let mut made = Vec::new();
-        through_blocks(&mut forward, blocks, &mut made);
+        through_blocks(&mut forward, needed, &mut made);
         let zero = forward.pool.constant(0.0);
         let mut stores = Vec::new();
-        let kept = self.unknowns.iter().chain(&self.kept);
-        for kept in kept.filter(|kept| assigned.contains(&kept.variable)) {
+        for kept in set {
             for (column, register) in kept.registers.iter().enumerate() {
                 let value = forward.of(kept.variable, column).unwrap_or(zero);
                 stores.push((*register, value));
@@ -485,9 +515,10 @@ impl<'a> Compiler<'a> {
             }
         }
         seeds.push((VarId(0), BTreeMap::from([(m, one)])));
+        let needed = needed_blocks(&self.pool, &sorted.blocks, &compared);
         let mut forward = seeded(&mut self.pool, &mut self.next, seeds);
         let mut made = Vec::new();
-        through_blocks(&mut forward, &sorted.blocks, &mut made);
+        through_blocks(&mut forward, needed, &mut made);
         let zero = forward.pool.constant(0.0);
         let mut outputs = Vec::new();
         for e in compared {
@@ -497,42 +528,79 @@ impl<'a> Compiler<'a> {
         compile_outputs(&self.pool, self.registers, &made, &outputs)
     }
 
-    fn rhs(&mut self) -> Outputs {
-        let program = self.program;
+    /// The derivatives of the right-hand side for parameters and kept variables.
+    fn rhs(&mut self) -> RightSides {
+        let continuous = &self.program.continuous;
         let mut outputs = self.state_derivatives();
-        outputs.extend(&program.continuous.residuals);
-        let needed = slice(&self.pool, &program.continuous.integrated, &outputs);
-        self.differentiated(&needed, &outputs, false)
+        outputs.extend(&continuous.residuals);
+        let needed = slice(&self.pool, &continuous.integrated, &outputs);
+        let (one, m) = (self.pool.constant(1.0), self.parameters.len());
+        let mut seeds = self.seeds(&[Seed::Parameters]);
+        for (at, kept) in self.kept.iter().enumerate() {
+            seeds.push((kept.variable, BTreeMap::from([(m + at, one)])));
+        }
+        let (made, rows) = self.differentiated(&needed, &outputs, seeds);
+        let (mut direct, mut kept) = (Vec::new(), Vec::new());
+        let (mut entries, mut of_kept) = (Vec::new(), Vec::new());
+        for (row, of_row) in (0u32..).zip(&rows) {
+            for (column, entry) in of_row {
+                match column.checked_sub(m) {
+                    None => {
+                        direct.push((row, *column as u32));
+                        entries.push(*entry);
+                    }
+                    Some(at) => {
+                        kept.push((row, self.kept[at].registers[0]));
+                        of_kept.push(*entry);
+                    }
+                }
+            }
+        }
+        entries.extend(of_kept);
+        let code = compile_continuous(&self.pool, self.registers, &made, &entries, Hoisting::Known);
+        RightSides::new(code, (direct, kept), (rows.len(), m))
     }
 
     fn observe(&mut self, observed: &[Expr]) -> Outputs {
         let needed = slice(&self.pool, &self.program.sequence, observed);
-        self.differentiated(&needed, observed, true)
+        let seeds = [Seed::Parameters, Seed::Kept, Seed::States, Seed::Algebraic];
+        let seeds = self.seeds(&seeds);
+        let (made, rows) = self.differentiated(&needed, observed, seeds);
+        let zero = self.pool.constant(0.0);
+        let mut all = observed.to_vec();
+        for column in self.columns() {
+            all.extend(rows.iter().map(|row| row.get(&column).copied().unwrap_or(zero)));
+        }
+        compile_continuous(&self.pool, self.registers, &made, &all, Hoisting::Known)
     }
 
-    /// Derivatives of outputs of a sequence, column by column, the unknowns given; after the
-    /// outputs themselves if these are requested.
+    /// The columns of all parameters in the order in which these were given.
+    fn columns(&self) -> Vec<usize> {
+        let n = self.parameters.len();
+        let (mut with, mut without) = (0..n, n..n + self.others.len());
+        let next = |column| match self.directions.binary_search(&column) {
+            Ok(_) => with.next(),
+            Err(_) => without.next(),
+        };
+        (0..n + self.others.len()).filter_map(next).collect()
+    }
+
+    /// The assignments of a sequence with those of their derivatives, and the derivatives of outputs
+    /// by column.
     fn differentiated(
         &mut self,
         sequence: &[Assignment],
         outputs: &[Expr],
-        with_values: bool,
-    ) -> Outputs {
-        let seeds = [Seed::Parameters, Seed::Kept, Seed::States, Seed::Algebraic];
-        let seeds = self.seeds(&seeds);
+        seeds: Seeds,
+    ) -> (Vec<Assignment>, Vec<BTreeMap<usize, Expr>>) {
         let mut forward = seeded(&mut self.pool, &mut self.next, seeds);
         let mut made = Vec::new();
         for assignment in sequence {
             made.push(*assignment);
             forward.assign(assignment, &mut made);
         }
-        let rows: Vec<_> = outputs.iter().map(|output| forward.row(*output)).collect();
-        let zero = self.pool.constant(0.0);
-        let mut all = if with_values { outputs.to_vec() } else { Vec::new() };
-        for column in 0..self.parameters.len() {
-            all.extend(rows.iter().map(|row| row.get(&column).copied().unwrap_or(zero)));
-        }
-        compile_continuous(&self.pool, self.registers, &made, &all, Hoisting::Known)
+        let rows = outputs.iter().map(|output| forward.row(*output)).collect();
+        (made, rows)
     }
 
     fn cleared(&self) -> Vec<Register> {

@@ -22,6 +22,9 @@
 
 mod blocks;
 mod code;
+mod directions;
+mod right_sides;
 
 pub(super) use blocks::through_blocks;
 pub use code::SensitivityCode;
+pub(crate) use right_sides::RightSidesSpace;

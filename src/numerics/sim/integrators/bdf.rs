@@ -211,6 +211,14 @@ impl IterationMatrix {
         self.factors.as_mut().expect("prepared at the restart").solve(b);
         b.iter_mut().zip(nominal).for_each(|(b, nominal)| *b *= nominal);
     }
+
+    /// The same for right-hand sides one after another.
+    fn solve_all(&mut self, nominal: &[f64], b: &mut [f64]) {
+        self.factors.as_mut().expect("prepared at the restart").solve_all(b);
+        for b in b.chunks_exact_mut(nominal.len()) {
+            b.iter_mut().zip(nominal).for_each(|(b, nominal)| *b *= nominal);
+        }
+    }
 }
 
 /// How an attempt to solve the corrector ended.

@@ -31,6 +31,11 @@ impl DenseLu {
         DenseLu { n, entries: vec![0.0; n * n], pivots: vec![0; n] }
     }
 
+    /// Number of rows.
+    pub(super) fn size(&self) -> usize {
+        self.n
+    }
+
     /// The entries, by columns, to be written before [`DenseLu::factorize`].
     #[inline]
     pub fn matrix(&mut self) -> &mut [f64] {

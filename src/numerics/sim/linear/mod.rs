@@ -66,6 +66,16 @@ impl Factorization {
             Factorization::Sparse(lu) => lu.solve(b),
         }
     }
+
+    /// Replaces right-hand sides, one after another, by the solutions.
+    pub fn solve_all(&mut self, b: &mut [f64]) {
+        match self {
+            Factorization::Dense(matrix) => {
+                b.chunks_exact_mut(matrix.lu.size().max(1)).for_each(|b| matrix.lu.solve(b));
+            }
+            Factorization::Sparse(lu) => lu.solve_all(b),
+        }
+    }
 }
 
 /// A sparse matrix factorised as a dense one.

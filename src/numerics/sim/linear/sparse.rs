@@ -54,6 +54,8 @@ pub struct SparseLu {
     /// With pivots for values; taken instead of the first.
     others: Option<Factors>,
     work: Vec<f64>,
+    /// The same for several right-hand sides at once, one beside the other.
+    wide: Vec<f64>,
 }
 
 /// Pivots, the pattern of the factors, and their values.
@@ -83,7 +85,8 @@ impl SparseLu {
     pub(super) fn new(pattern: &Pattern, coupled: &[usize]) -> SparseLu {
         let coupled = if coupled.len() <= MOST_COUPLED { coupled.to_vec() } else { Vec::new() };
         let (pattern, work) = (pattern.clone(), vec![0.0; pattern.n]);
-        SparseLu { pattern, coupled, first: None, is_analysed: false, others: None, work }
+        let wide = Vec::new();
+        SparseLu { pattern, coupled, first: None, is_analysed: false, others: None, work, wide }
     }
 
     /// Goes back to the pivots that do not depend on values.
@@ -135,6 +138,23 @@ impl SparseLu {
         match self.others.as_ref().or(self.first.as_ref()) {
             Some(factors) => factors.solve(b, &mut self.work),
             None => b.fill(f64::NAN),
+        }
+    }
+
+    /// The same for right-hand sides one after another: with the same bits, but places are looked up
+    /// once for several.
+    pub(super) fn solve_all(&mut self, b: &mut [f64]) {
+        let n = self.pattern.n;
+        let Some(factors) = self.others.as_ref().or(self.first.as_ref()) else {
+            return b.fill(f64::NAN);
+        };
+        self.wide.resize(n * (WIDTH + 1), 0.0);
+        let mut blocks = b.chunks_exact_mut(n * WIDTH);
+        for b in &mut blocks {
+            factors.solve_block(b, &mut self.wide);
+        }
+        for b in blocks.into_remainder().chunks_exact_mut(n) {
+            factors.solve(b, &mut self.work);
         }
     }
 }
@@ -264,6 +284,60 @@ impl Factors {
             }
             work[i] = sum * self.inverse_diagonal[i];
             b[self.columns[i] as usize] = work[i];
+        }
+    }
+}
+
+/// Right-hand sides that are solved for at once.
+const WIDTH: usize = 8;
+
+impl Factors {
+    /// Solves for [`WIDTH`] right-hand sides one after another; `work` has room for all and one more.
+    fn solve_block(&self, b: &mut [f64], work: &mut [f64]) {
+        let (all, n) = (self.rows.len(), self.inverse_diagonal.len());
+        let (work, single) = work.split_at_mut(all * WIDTH);
+        // Where they were computed by code, it has them.
+        let (lower, upper, inverse_diagonal) = match self.code.numbers() {
+            None => (&[][..], &[][..], &self.inverse_diagonal[..]),
+            Some(numbers) => {
+                let (lower, others) = numbers.split_at(self.lower.len());
+                let (upper, inverse_diagonal) = others.split_at(self.upper.len());
+                (lower, upper, inverse_diagonal)
+            }
+        };
+        let reduce =
+            |mut sums: [f64; WIDTH], rows: &Rows, i: usize, numbers: &[f64], work: &[f64]| {
+                for (at, (k, own)) in rows.range(i).zip(rows.row(i)) {
+                    let factor = numbers.get(at).unwrap_or(own);
+                    for (sum, x) in sums.iter_mut().zip(&work[*k as usize * WIDTH..][..WIDTH]) {
+                        *sum -= factor * x;
+                    }
+                }
+                sums
+            };
+        for i in 0..all {
+            let row = self.rows[i] as usize;
+            let sums = std::array::from_fn(|column| b[column * all + row]);
+            let sums = reduce(sums, &self.lower, i, lower, work);
+            work[i * WIDTH..][..WIDTH].copy_from_slice(&sums);
+        }
+        for column in 0..if n < all { WIDTH } else { 0 } {
+            for (i, value) in single.iter_mut().enumerate().skip(n) {
+                *value = work[i * WIDTH + column];
+            }
+            self.solve_last(&mut b[column * all..][..all], single);
+            for (i, value) in single.iter().enumerate().skip(n) {
+                work[i * WIDTH + column] = *value;
+            }
+        }
+        for i in (0..n).rev() {
+            let sums = std::array::from_fn(|column| work[i * WIDTH + column]);
+            let sums = reduce(sums, &self.upper, i, upper, work);
+            for (column, sum) in sums.into_iter().enumerate() {
+                let value = sum * inverse_diagonal[i];
+                work[i * WIDTH + column] = value;
+                b[column * all + self.columns[i] as usize] = value;
+            }
         }
     }
 }

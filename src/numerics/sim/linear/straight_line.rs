@@ -111,6 +111,11 @@ impl StraightLine {
         self.numbers = vec![0.0; Places::of(shape).all];
     }
 
+    /// L, U and the inverse diagonal, if they were computed by the code.
+    pub fn numbers(&self) -> Option<&[f64]> {
+        self.holds_factors.then_some(&self.numbers[..])
+    }
+
     /// Solves with the factors, `last` in the middle; whether they were computed by the code.
     pub fn solve(
         &self,

@@ -98,6 +98,15 @@ proptest! {
             code.solve(&mut b);
             let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             prop_assert_eq!(bits(&a), bits(&b));
+            // So do several right-hand sides at once.
+            let right: Vec<f64> = (0..40 * 11).map(|i| (i as f64).sin()).collect();
+            let mut one_by_one = right.clone();
+            one_by_one.chunks_exact_mut(40).for_each(|b| loops.solve(b));
+            for factors in [&mut loops, &mut code] {
+                let mut all = right.clone();
+                factors.solve_all(&mut all);
+                prop_assert_eq!(bits(&all), bits(&one_by_one));
+            }
         }
     }
 

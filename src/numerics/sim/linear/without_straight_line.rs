@@ -22,6 +22,11 @@ impl StraightLine {
         None
     }
 
+    /// Loops over the pattern have them.
+    pub fn numbers(&self) -> Option<&[f64]> {
+        None
+    }
+
     /// Loops over the pattern solve.
     pub fn solve(
         &self,
