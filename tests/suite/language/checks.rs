@@ -559,3 +559,20 @@ fn powers_of_matrices_of_integers_are_integers() {
         "type-mismatch",
     );
 }
+
+/// Operands have the types of their operators (MLS §3.5, §10.6), elements of arrays as well.
+#[test]
+fn operands_have_the_types_of_their_operators() {
+    let code = "type-mismatch";
+    for wrong in ["2 and true", "time > 0.5 or 1", "not 1", "n or time > 1", "not {1, 2}"] {
+        refused(&format!("model M Integer n = 2; Boolean b = {wrong}; end M;"), code);
+    }
+    for wrong in ["2*c", "c .* {1, 2}", "-c + {1, 2}", "{abs(c[1]), 2}"] {
+        let text = format!("model M Boolean c[2] = {{true, false}}; Real x[2] = {wrong}; end M;");
+        refused(&text, code);
+    }
+    accepted(
+        "model M Boolean c[2] = {true, false}; Boolean d[2] = not c; Boolean e = c[1] or d[2];
+        Real x[2, 2] = {{1, 2}, {3, 4}}; Real y[2] = 2*x[:, 1] + x[2, :]; end M;",
+    );
+}

@@ -1,5 +1,6 @@
-//! Types of scalar expressions, as far as a class tells by itself: conditions are Boolean, and both
-//! sides of a relation have one type (MLS §3.5, §4.9.5, §8.3.4, §8.3.7). Of a model, bindings and equations
+//! Types of expressions and of the elements of arrays, as far as a class tells by itself: conditions and
+//! operands of `and`, `or` and `not` are Boolean, those of arithmetic numbers, and both sides of a relation
+//! have one type (MLS §3.4, §3.5, §4.9.5, §8.3.4, §8.3.7). Of a model, bindings and equations
 //! are left to flattening, which knows all types and sizes.
 
 use super::scope::{Component, Scope};
@@ -14,7 +15,7 @@ use crate::inference::{self, ElementType, Elementary, TypesOfNames};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     Arguments, BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
-    Expression, ExpressionKind, Section, Statement, StatementKind,
+    Expression, ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
 };
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,
@@ -143,6 +144,12 @@ impl TypeCheck<'_, '_> {
         }
     }
 
+    fn truth(&mut self, (operand, found): Typed<'_>, operator: &str) {
+        if let Some(kind) = found.filter(|kind| *kind != CheckedType::Boolean) {
+            self.mismatch(operand, &format!("`{operator}` needs Booleans"), kind);
+        }
+    }
+
     /// Old libraries compute with enumerations, whose ordinals other programs take.
     fn term(&mut self, operand: Typed<'_>) {
         let before = self.errors.len();
@@ -159,9 +166,11 @@ impl TypeCheck<'_, '_> {
         let types = inference::chain_types(&mut &self.types, chain);
         for (one, left) in chain.chain().1.into_iter().zip(types) {
             let operands = [(one.left, left), (one.right, self.types.type_of(one.right))];
-            match inference::is_relation(one.operator) {
-                true => self.relation(operands),
-                false => self.operands(one.operator, operands),
+            match one.operator {
+                BinaryOperator::And => operands.into_iter().for_each(|one| self.truth(one, "and")),
+                BinaryOperator::Or => operands.into_iter().for_each(|one| self.truth(one, "or")),
+                operator if inference::is_relation(operator) => self.relation(operands),
+                operator => self.operands(operator, operands),
             }
         }
     }
@@ -251,19 +260,12 @@ impl DeclaredTypes<'_> {
     }
 
     fn kind_of_reference(&self, reference: &ComponentReference) -> Option<CheckedType> {
-        if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
-            return None;
-        }
         let first = reference.parts[0].name;
         if !reference.global && self.loops.contains(&first) {
             return None;
         }
         if !reference.global && super::names::is_component(self.class, first) {
-            let path = self.class.path(reference)?;
-            let is_scalar = |one: &Component<'_>| {
-                one.declaration.subscripts.is_empty() && one.clause.subscripts.is_empty()
-            };
-            return path.iter().all(is_scalar).then(|| path.last().and_then(kind_of))?;
+            return self.class.path(reference)?.last().and_then(kind_of);
         }
         self.literal(reference)
     }
@@ -318,6 +320,10 @@ impl Visit for TypeCheck<'_, '_> {
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
             ExpressionKind::Binary { .. } => self.operations(expression),
+            ExpressionKind::Unary { operator: UnaryOperator::Not, operand } => {
+                let found = self.types.type_of(operand);
+                self.truth((operand, found), "not");
+            }
             ExpressionKind::If { branches, .. } => {
                 for (condition, _) in branches {
                     if let Some(kind) =
@@ -371,7 +377,7 @@ impl Visit for TypeCheck<'_, '_> {
     }
 }
 
-/// The type that a component is declared of, if a scalar one; none if it can be redeclared.
+/// The type that a component, or its elements, is declared of; none if it can be redeclared.
 fn kind_of(component: &Component<'_>) -> Option<CheckedType> {
     let prefixes = component.clause.prefixes;
     if prefixes.replaceable || prefixes.outer {
@@ -381,7 +387,7 @@ fn kind_of(component: &Component<'_>) -> Option<CheckedType> {
         Type::Predefined(predefined) => (Some(predefined), None),
         Type::Class(class) => {
             let class = component.owner.of(class);
-            if super::compatibility::dimensions(class) > 0 || class.is_replaceable() {
+            if class.is_replaceable() {
                 return None;
             }
             (class.predefined(), class.enumeration())
