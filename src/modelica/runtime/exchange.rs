@@ -188,9 +188,10 @@ impl System {
         own.initialize(t, &mut y)?;
         let below = own.total_derivatives(code, t, &y)?;
         let mut all = below.insert_rows(0, n, 0.0);
-        for (direction, column) in code.directions.iter().enumerate() {
+        for (column, direction) in code.directions.iter().enumerate() {
+            let Some(direction) = direction else { continue };
             let derivatives = &y[n * (1 + direction)..][..n];
-            all.view_mut((0, *column), (n, 1)).copy_from_slice(derivatives);
+            all.view_mut((0, column), (n, 1)).copy_from_slice(derivatives);
         }
         Ok(all)
     }
@@ -220,11 +221,11 @@ impl System {
         let (columns, stride) = (code.n_parameters(), right_sides.len() / m.max(1));
         let p = observed.len() / (1 + columns);
         let mut all = DMatrix::zeros(n + p, columns);
-        for (direction, column) in code.directions.iter().enumerate() {
-            let derivatives = &right_sides[direction * stride..][..n];
-            all.view_mut((0, *column), (n, 1)).copy_from_slice(derivatives);
-        }
-        for column in 0..columns {
+        for (column, direction) in code.directions.iter().enumerate() {
+            if let Some(direction) = direction {
+                let derivatives = &right_sides[direction * stride..][..n];
+                all.view_mut((0, column), (n, 1)).copy_from_slice(derivatives);
+            }
             let derivatives = &observed[p * (1 + column)..][..p];
             all.view_mut((n, column), (p, 1)).copy_from_slice(derivatives);
         }

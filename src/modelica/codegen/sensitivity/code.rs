@@ -32,9 +32,8 @@ pub struct SensitivityCode {
     pub(crate) registers: Registers,
     /// Positions of the parameters with columns in [`Program::parameters`].
     pub(crate) parameters: Vec<usize>,
-    /// Their positions among all that the code was made for.
-    pub(crate) directions: Vec<usize>,
-    n_parameters: usize,
+    /// The column of each parameter that the code was made for, where it has one.
+    pub(crate) directions: Vec<Option<usize>>,
     /// Unknowns of the integrator.
     pub(crate) unknowns: Vec<Kept>,
     /// For every previous value that has derivatives, where these come from and go to.
@@ -85,7 +84,7 @@ impl SensitivityCode {
     ) -> Result<Arc<SensitivityCode>, String> {
         let mut pool = program.sorted.dae.pool.clone();
         let directions = directions(program, &mut pool, parameters);
-        refuse(program, parameters, directions.len())?;
+        refuse(program, parameters, directions.iter().flatten().count())?;
         let outputs = expressions(program, &mut pool, observed);
         // Those after the registers of a system that observes these variables.
         let mut registers = observing(program, &pool, &outputs).0;
@@ -95,7 +94,7 @@ impl SensitivityCode {
 
     /// Number of parameters.
     pub fn n_parameters(&self) -> usize {
-        self.n_parameters
+        self.directions.len()
     }
 
     /// Number of parameters that the solution depends on.
@@ -164,8 +163,8 @@ struct Compiler<'a> {
     registers: &'a mut Registers,
     /// Positions of those with columns.
     parameters: Vec<usize>,
-    /// Their positions among all.
-    directions: Vec<usize>,
+    /// The column of each parameter, where it has one.
+    directions: Vec<Option<usize>>,
     /// Positions of those without, whose columns come after the others in what is observed.
     others: Vec<usize>,
     /// Derivatives of parameters by column.
@@ -182,12 +181,14 @@ impl<'a> Compiler<'a> {
         program: &'a Program,
         pool: Pool,
         registers: &'a mut Registers,
-        (all, directions): (&[usize], Vec<usize>),
+        (all, directions): (&[usize], Vec<Option<usize>>),
     ) -> Compiler<'a> {
         let dae = &program.sorted.dae;
-        let parameters: Vec<usize> = directions.iter().map(|column| all[*column]).collect();
-        let others = (0..all.len()).filter(|column| directions.binary_search(column).is_err());
-        let others = others.map(|column| all[column]).collect();
+        let of = |is_carried: bool| {
+            let own = all.iter().zip(&directions).filter(|own| own.1.is_some() == is_carried);
+            own.map(|(at, _)| *at).collect::<Vec<usize>>()
+        };
+        let (parameters, others) = (of(true), of(false));
         let mut keep = |variable: VarId| Kept {
             variable,
             registers: parameters.iter().map(|_| registers.fresh()).collect(),
@@ -243,7 +244,6 @@ impl<'a> Compiler<'a> {
         let observe = self.observe(observed);
         Ok(SensitivityCode {
             registers: self.registers.clone(),
-            n_parameters: self.parameters.len() + self.others.len(),
             previous: self.previous(),
             cleared: self.cleared(),
             time: self.time.registers,
@@ -558,7 +558,7 @@ impl<'a> Compiler<'a> {
         }
         entries.extend(of_kept);
         let code = compile_continuous(&self.pool, self.registers, &made, &entries, Hoisting::Known);
-        RightSides::new(code, (direct, kept), (rows.len(), m))
+        RightSides { code, direct, kept, n_rows: rows.len(), n_columns: m }
     }
 
     fn observe(&mut self, observed: &[Expr]) -> Outputs {
@@ -576,13 +576,8 @@ impl<'a> Compiler<'a> {
 
     /// The columns of all parameters in the order in which these were given.
     fn columns(&self) -> Vec<usize> {
-        let n = self.parameters.len();
-        let (mut with, mut without) = (0..n, n..n + self.others.len());
-        let next = |column| match self.directions.binary_search(&column) {
-            Ok(_) => with.next(),
-            Err(_) => without.next(),
-        };
-        (0..n + self.others.len()).filter_map(next).collect()
+        let mut others = self.parameters.len()..;
+        self.directions.iter().filter_map(|own| own.or_else(|| others.next())).collect()
     }
 
     /// The assignments of a sequence with those of their derivatives, and the derivatives of outputs

@@ -9,8 +9,13 @@ use crate::lower::VariableKind;
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The columns, ascending, of those parameters (positions in [`Program::parameters`]).
-pub(super) fn directions(program: &Program, pool: &mut Pool, parameters: &[usize]) -> Vec<usize> {
+/// The number among those of each of these parameters (positions in [`Program::parameters`]), if it is
+/// one.
+pub(super) fn directions(
+    program: &Program,
+    pool: &mut Pool,
+    parameters: &[usize],
+) -> Vec<Option<usize>> {
     let read = read_by_solution(program, pool);
     let mut columns: FxHashMap<VarId, FxHashSet<usize>> = FxHashMap::default();
     for (column, at) in parameters.iter().enumerate() {
@@ -27,7 +32,9 @@ pub(super) fn directions(program: &Program, pool: &mut Pool, parameters: &[usize
     }
     let found: FxHashSet<usize> =
         read.iter().filter_map(|v| columns.get(v)).flatten().copied().collect();
-    (0..parameters.len()).filter(|column| found.contains(column)).collect()
+    let mut numbers = 0..;
+    let number = |column| if found.contains(&column) { numbers.next() } else { None };
+    (0..parameters.len()).map(number).collect()
 }
 
 /// All variables that unknowns, discrete variables and the times of events are computed from.

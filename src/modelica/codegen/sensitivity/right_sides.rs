@@ -24,11 +24,11 @@ pub(crate) struct RightSides {
     /// Their nonzeros: for parameters, then for kept variables.
     pub(crate) code: Outputs,
     /// Row and column of the former.
-    direct: Vec<(u32, u32)>,
+    pub(super) direct: Vec<(u32, u32)>,
     /// Of the latter the row and the first register of the derivatives of the variable.
-    kept: Vec<(u32, Register)>,
-    n_rows: usize,
-    n_columns: usize,
+    pub(super) kept: Vec<(u32, Register)>,
+    pub(super) n_rows: usize,
+    pub(super) n_columns: usize,
 }
 
 /// What right-hand sides are computed in.
@@ -43,15 +43,6 @@ pub(crate) struct RightSidesSpace {
 }
 
 impl RightSides {
-    /// With code for as many entries as there are places, in their order.
-    pub(super) fn new(
-        code: Outputs,
-        (direct, kept): (Vec<(u32, u32)>, Vec<(u32, Register)>),
-        (n_rows, n_columns): (usize, usize),
-    ) -> RightSides {
-        RightSides { code, direct, kept, n_rows, n_columns }
-    }
-
     /// Number of its results.
     pub(crate) fn len(&self) -> usize {
         self.n_rows * self.n_columns
