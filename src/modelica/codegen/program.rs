@@ -33,7 +33,8 @@ pub struct ParameterInfo {
     pub default: f64,
     /// Whether it stands directly in the class.
     pub top_level: bool,
-    pub(crate) variable: VarId,
+    /// Its variable in the equations.
+    pub variable: VarId,
 }
 
 /// A scalar variable of the model, aliases, parameters and constants included.

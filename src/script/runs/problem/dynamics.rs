@@ -3,13 +3,15 @@
 
 use super::enclosing_class::{EnclosingClass, own_name};
 use super::file::{ColumnEntry, DelayEntry, ExperimentEntry, ProblemFile, Role};
-use super::invariants::invariants;
+use super::invariants::{self, invariants};
 use crate::bail;
-use crate::causalize::CausalizedDae;
-use crate::diag::Fault;
+use crate::codegen::Program;
+use crate::diag::{Fault, suggest};
 use crate::identify::significant;
 use crate::registry::BAD_OPTION;
+use crate::symbolic::VarId;
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// Delays that are shorter than this part of the measured time are said to be slow: with 1e-3, a
 /// simulation of one state took 4 ms, with 1e-4 40 ms (a decay, measured for 5.5 s).
@@ -113,13 +115,15 @@ pub(super) fn delayed(
 ///
 /// # Errors
 ///
-/// States whose initial values are given besides; models without states.
+/// States whose initial values are given besides; models without states; sums that are conserved but not
+/// found.
 pub(super) fn steady(
     file: &ProblemFile,
     entry: &ExperimentEntry,
-    model: &CausalizedDae,
+    (program, varied): (&Arc<Program>, &[VarId]),
     enclosing: &mut EnclosingClass,
 ) -> Result<Vec<String>, Fault> {
+    let model = program.sorted();
     let given = file.parameters.iter().find(|(_, parameter)| parameter.initial);
     if let Some(name) = given.map(|(name, _)| name).or_else(|| entry.start.keys().next()) {
         bail!(BAD_OPTION, "the initial value of `{name}` cannot be chosen in a steady-state experiment"; help: "remove `steady_state` or the initial value");
@@ -127,11 +131,18 @@ pub(super) fn steady(
     if model.states.is_empty() {
         bail!(BAD_OPTION, "`{}` has no states, so `steady_state` has no meaning", file.model; help: "remove `steady_state`");
     }
-    let (invariants, mut sums) = (invariants(model), Vec::new());
+    let invariants = invariants(model, varied);
+    let all = invariants::count(program, varied);
+    let known = invariants.as_ref().filter(|own| all.is_none_or(|all| all == own.len()));
+    let Some(known) = known else {
+        let all = suggest::counted(all.unwrap_or(0) as u64, "sum");
+        bail!(BAD_OPTION, "the steady state is not determined: the equations conserve {all} of states that cannot be written down"; help: "write `start_time` and `rest = true`, which simulate until nothing changes");
+    };
+    let mut sums = Vec::new();
     enclosing.equations.push_str("initial equation\n");
     for (place, state) in model.states.iter().enumerate() {
         let name = model.dae.variables[state.0 as usize].name.to_string();
-        if let Some(invariant) = invariants.iter().find(|own| own.pivot == place) {
+        if let Some(invariant) = known.iter().find(|own| own.pivot == place) {
             let [sum, start] = invariant.sides(model);
             _ = writeln!(enclosing.equations, "  {sum} = {start};");
             sums.push(format!("{sum} = {start}"));

@@ -54,8 +54,11 @@ fn solved_with(files: &[(&str, String)], options: &RunOptions) -> Solution {
 }
 
 fn refusal(problem: &str, data: &str) -> String {
-    let files = [("p.toml", problem.to_owned()), ("d.csv", data.to_owned())];
-    let mut session = Session::new(Box::new(world(&files)));
+    refusal_of(&[("p.toml", problem.to_owned()), ("d.csv", data.to_owned())])
+}
+
+fn refusal_of(files: &[(&str, String)]) -> String {
+    let mut session = Session::new(Box::new(world(files)));
     match solve(&mut session, Path::new("p.toml"), &RunOptions::default()) {
         Ok(_) => panic!("solved"),
         Err(errors) => errors[0].message.clone(),

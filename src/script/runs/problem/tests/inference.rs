@@ -132,6 +132,50 @@ fn a_steady_state_keeps_what_the_equations_conserve() {
     assert!(said.unwrap().sentence.ends_with("a + b = total"), "{said:?}");
 }
 
+/// Sums with weights: dimers count twice, volumes and heat capacities are parameters, rates stand in sums,
+/// products and variables of their own. At rest the sum is that of the start values.
+#[test]
+fn a_steady_state_keeps_weighted_sums() {
+    let dimer = "parameter Real k = 1, w = 2; Real u(start = 1, fixed = true), p(start = 0, fixed = true), \
+                 d(start = 0, fixed = true), q; Real y = u + p + 2*d; equation ";
+    let forms = [
+        "q = 0; der(u) = 0.5*p - u; der(p) = u - 0.5*p - 2*k*(p^2 - 0.1*d); der(d) = k*(p^2 - 0.1*d);",
+        "q = p*p - d/10; der(u) = 0.5*p - u; der(p) = u - 0.5*p - 2*q*k; der(d) = k*q;",
+        "q = k*p/(0.3 + p); der(u) = 0.5*p - u; der(p) = u - 0.5*p - 2*(q - 0.1*d); der(d) = q - 0.1*d;",
+        "q = 0; der(u) = 0.5*p - u; der(p) = u - 0.5*p - w*k*(p^2 - 0.1*d); der(d) = k*(p^2 - 0.1*d);",
+    ];
+    let heat = "parameter Real k = 0.7, w = 2, C = 5; Real y = (w*a + C*b)/260, a(start = 80, fixed = true), \
+                b(start = 20, fixed = true); equation w*der(a) = k*(b - a); C*der(b) = k*(a - b);";
+    let bodies = forms.iter().map(|form| format!("{dimer}{form}")).chain([heat.to_owned()]);
+    for body in bodies {
+        let model = format!("model Sum {body} end Sum;\n");
+        let problem = "model = \"Sum\"\nfiles = [\"m.mo\"]\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+                       [[experiment]]\ndata = \"d.csv\"\nsteady_state = true\n\
+                       outputs = { y = { sigma = 1 } }\n[stop]\nevaluations = 3\n";
+        let data = table("time,y", |_| "0".to_owned());
+        let files = [("p.toml", problem.to_owned()), ("d.csv", data), ("m.mo", model)];
+        let solution = solved(&files);
+        let rmse = solution.series[0].rmse;
+        assert!((rmse - 1.0).abs() < 1e-6, "{body}: the sum is {rmse}");
+    }
+}
+
+/// A sum whose weights are no products of powers is not passed over.
+#[test]
+fn a_steady_state_that_is_not_determined_is_refused() {
+    let model = "model Sum parameter Real k = 1, w = 1; Real a(start = 1, fixed = true), b(start = 1, fixed \
+                 = true); equation der(a) = -k*(a - b)*(1 + w); der(b) = k*(a - b); end Sum;\n";
+    let problem = "model = \"Sum\"\nfiles = [\"m.mo\"]\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\nsteady_state = true\noutputs = { a = \"a\" }\n";
+    let data = table("time,a", |_| "1".to_owned());
+    let files = [("p.toml", problem.to_owned()), ("d.csv", data), ("m.mo", model.to_owned())];
+    let said = refusal_of(&files);
+    assert!(
+        said.contains("the equations conserve 1 sum of states that cannot be written"),
+        "{said}"
+    );
+}
+
 /// A rate that is zero in the model leaves an equation of its rest without any coefficient; it is estimated
 /// nevertheless. The step from rest at x = z = 1/k2 is computed by small steps of Euler's method, which
 /// are as exact as the comparison.
