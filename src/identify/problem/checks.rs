@@ -93,18 +93,25 @@ pub(crate) fn residual_findings(
     let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
     // A contradiction between a prior and the data is reported of the prior.
     let is_no_data = |k: usize| !problem.series[k].is_data();
-    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k) && !is_no_data(*k)) {
+    let raw = |own: &Own<'_>| -> Vec<f64> {
+        let pairs = own.points.iter().zip(&own.residuals);
+        pairs.map(|(&j, r)| r / statistics.weights[j]).collect()
+    };
+    let is_exact = |own: &Own<'_>| {
         let size = rms(&own.points.iter().map(|&j| simulated[j]).collect::<Vec<f64>>());
-        let raw: Vec<f64> = own
-            .points
-            .iter()
-            .zip(&own.residuals)
-            .map(|(&j, r)| r / statistics.weights[j])
-            .collect();
-        if !resolved && rms(&raw) <= FROM_THE_SOLVER * problem.noise * size {
+        !resolved && rms(&raw(own)) <= FROM_THE_SOLVER * problem.noise * size
+    };
+    // Standard errors are those of given deviations, or of the noise of other series.
+    let has_errors = all
+        .iter()
+        .enumerate()
+        .any(|(k, own)| !is_no_data(k) && (problem.series[k].sigma.is_known() || !is_exact(own)));
+    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k) && !is_no_data(*k)) {
+        let raw = raw(own);
+        if is_exact(own) {
             findings.push(match is_followed(statistics, own) {
                 true => passed_through(own),
-                false => no_noise(own),
+                false => no_noise(own, has_errors),
             });
             suspects.retain(|j| !own.points.contains(j));
             continue;
@@ -219,16 +226,17 @@ fn passed_through(own: &Own<'_>) -> Finding {
     Finding::new(FindingKind::Missing, sentence).series(&own.label)
 }
 
-fn no_noise(own: &Own<'_>) -> Finding {
-    Finding::new(
-        FindingKind::NoNoise,
-        format!(
-            "The residuals of {} are as small as the errors of the simulation: the fit is exact. \
-             These data have no noise, so there are no standard errors and no intervals.",
-            own.label
-        ),
-    )
-    .series(&own.label)
+fn no_noise(own: &Own<'_>, has_errors: bool) -> Finding {
+    let (kind, so) = match has_errors {
+        true => (FindingKind::Missing, ""),
+        false => (FindingKind::NoNoise, ", so there are no standard errors and no intervals"),
+    };
+    let sentence = format!(
+        "The residuals of {} are as small as the errors of the simulation: the fit is exact. These \
+         data have no noise{so}.",
+        own.label
+    );
+    Finding::new(kind, sentence).series(&own.label)
 }
 
 fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<Finding> {

@@ -313,6 +313,19 @@ fn a_step_is_an_interval_and_not_without_effect() {
     assert_eq!(solution.parameters[0].verdict, Some(Verdict::WithoutEffect));
 }
 
+/// An exact fit leaves the standard errors of given deviations.
+#[test]
+fn an_exact_output_does_not_deny_errors_of_given_deviations() {
+    let outputs = [(decay as Formula, vec![0.0; 50], Sigma::Given(vec![0.1; 50]))];
+    let mut problem = problem(&outputs, &TRUTH, [0.01, 20.0], None);
+    problem.noise = 1e-6;
+    let (_, solution) = solved(problem);
+    assert!(solution.parameters.iter().all(|p| p.deviation.is_some()));
+    assert!(!has(&solution, FindingKind::NoNoise), "{:?}", solution.findings);
+    let said = solution.findings.iter().find(|own| own.sentence.contains("the fit is exact"));
+    assert!(said.is_some_and(|own| own.sentence.ends_with("have no noise.")), "{said:?}");
+}
+
 #[test]
 fn as_many_points_as_parameters_determine_nothing() {
     let solution = one(decay, Noise::new(12).white(2, 0.1), Sigma::Unknown);

@@ -26,7 +26,6 @@ use crate::models::static_curve;
 use crate::registry::BAD_OPTION;
 use crate::sim::{self, Residual, Settings, TimeBudget};
 use crate::source::Span;
-use crate::symbolic::VarId;
 use crate::syntax::ast::CausalityPrefix;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -418,11 +417,7 @@ impl Source<'_> {
             let class = enclosing.load(session, &base, here)?;
             let plain = without_data(session, &class)?;
             setting.avoid_zeros(&parameters, &plain, &mut enclosing);
-            let varied: Vec<VarId> = parameters
-                .iter()
-                .filter_map(|(_, name)| plain.find_parameter(name).ok())
-                .map(|at| plain.parameters()[at].variable)
-                .collect();
+            let varied = parameters::variables(&parameters, &plain);
             let sums = dynamics::steady(file, entry, (&plain, &varied), &mut enclosing);
             let sums = sums.at(entry.places.at(&["steady_state"])).map_err(|error| vec![error])?;
             notes.about(

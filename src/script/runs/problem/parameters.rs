@@ -18,6 +18,7 @@ use crate::models::simulation::flat_model_of;
 use crate::models::translated::Translated;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
+use crate::symbolic::VarId;
 use crate::syntax::ast::{Expression, ExpressionKind};
 use crate::syntax::visit::Rewrite;
 use std::fmt::Write;
@@ -47,6 +48,12 @@ pub(super) type Types<'a> = Option<&'a FlatModel>;
 fn declared<'a>(types: Types<'a>, name: &str) -> (&'a str, Option<&'a BaseType>) {
     let Some(flat) = types else { return ("", None) };
     (&flat.name, variable_of(flat, name).map(|own| &own.base))
+}
+
+/// The variables of parameters in the equations.
+pub(super) fn variables(names: &[(usize, String)], program: &Program) -> Vec<VarId> {
+    let found = names.iter().filter_map(|(_, name)| program.find_parameter(name).ok());
+    found.map(|at| program.parameters()[at].variable).collect()
 }
 
 impl Setting<'_> {

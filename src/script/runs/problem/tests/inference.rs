@@ -132,7 +132,7 @@ fn a_steady_state_keeps_what_the_equations_conserve() {
     assert!(said.unwrap().sentence.ends_with("a + b = total"), "{said:?}");
 }
 
-/// Sums with weights: dimers count twice, volumes and heat capacities are parameters, rates stand in sums,
+/// Sums with weights: dimers count twice, volumes and heat capacities are parameters, rates are sums,
 /// products and variables of their own. At rest the sum is that of the start values.
 #[test]
 fn a_steady_state_keeps_weighted_sums() {
