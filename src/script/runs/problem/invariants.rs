@@ -16,6 +16,7 @@ use crate::sim::Residual as _;
 use crate::symbolic::{Expr, Node, VarId, print};
 use nalgebra::{DMatrix, DVector};
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::LN_2;
 use std::sync::Arc;
 
 /// Factors of a term, by their numbers, ascending, and the power of each.
@@ -128,7 +129,7 @@ pub(super) fn invariants(model: &CausalizedDae, varied: &[VarId]) -> Option<Vec<
         let mut expected = 1.0;
         for (k, parameter) in parameters.iter().enumerate() {
             let (pivot, row) = changed[k].get(number)?;
-            let power = (row[state] / size).log2();
+            let power = elementary::ln(row[state] / size) / LN_2;
             if *pivot != found[number].0 || (power - power.round()).abs() > SAME {
                 return None;
             }
