@@ -86,6 +86,11 @@ pub fn effect(
     (values, simulated): (&[f64], &[f64]),
     k: usize,
 ) -> Result<(Effect, u64), Fault> {
+    if statistics.is_made_up_for(k) {
+        // Where scales are positive it may act at finite distances, but the others that they make up for
+        // are not refitted then: their derivatives are zero as well.
+        return Ok((Effect::None, 0));
+    }
     let free = &problem.parameters[k];
     let here = free.fraction(values[k]);
     let places = [-1.0, 1.0].map(|side| outward(here, side));

@@ -743,6 +743,12 @@ fn the_script_with_the_values_calibrates_the_model() {
             "",
             "column = \"c\"",
         ),
+        (
+            format!("k_a = {range}\nk_b = {range}"),
+            "set = { k = \"k_a\" }\noutputs = { y = \"c\" }\n[[experiment]]\nname = \"two\"\n\
+             data = \"d.csv\"\nset = { k = \"k_b\" }",
+            "column = \"c\"",
+        ),
     ] {
         let problem = format!(
             "model = \"Pool\"\nfiles = [\"Pool.mo\"]\nbands = false\n[parameters]\n{parameters}\n\

@@ -213,6 +213,26 @@ fn what_a_scale_makes_up_for_is_not_determined() {
 }
 
 /// A signal that falls where the model rises has a scale of 0, and a negative one only where it may.
+/// The start and the end of a relaxation, of which the scale is a difference that must stay positive:
+/// neither is bounded, as each can follow the other.
+#[test]
+fn what_positive_scales_limit_is_not_called_a_bound() {
+    let folder = folder();
+    let model = "model Relax\n  parameter Real k = 1, a = 2, b = 0.3;\n  Real c(start = a, fixed = true);\n\
+                 equation\n  der(c) = b - k*c;\nend Relax;\n";
+    fs::write(folder.path().join("chain.mo"), model).unwrap();
+    let text = "model = \"Relax\"\nfiles = [\"chain.mo\"]\n[parameters]\nk = { min = 0.3, max = 1.5 }\n\
+                a = { min = 0.2, max = 20 }\nb = { min = 0.03, max = 3 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                outputs = { c = { column = \"other\", scale = \"estimate\", offset = \"estimate\" } }\n";
+    let (result, said) = solved(&folder, "relax", text);
+    for name in ["a", "b"] {
+        let expected =
+            format!("The data do not determine {name}: it does the same as an estimated");
+        assert!(said.contains(&expected) && !said.contains("at least"), "{said}");
+        assert!(parameter(&result, name)["standard_error"].is_null(), "{said}");
+    }
+}
+
 #[test]
 fn a_scale_is_positive_unless_it_may_have_any_sign() {
     let folder = folder();

@@ -35,7 +35,12 @@ impl Calibration {
             .parameters
             .iter()
             .filter(|(name, one)| !one.per_experiment && !dynamics::is_delay(file, name))
-            .filter(|(name, _)| program.find_parameter(&deviation::parameter(name)).is_err());
+            .filter(|(name, _)| program.find_parameter(&deviation::parameter(name)).is_err())
+            // Names in the `set` of experiments are none of the model.
+            .filter(|(name, one)| {
+                matches!(one.role(name), Ok(Role::Fixed(ValueEntry::Text(_))))
+                    || program.variables().iter().any(|own| *own.name == ***name)
+            });
         let entry = |(name, parameter): (&String, &super::file::ParameterEntry)| {
             let text = match parameter.role(name).ok()? {
                 Role::Free { .. } => None,

@@ -446,6 +446,17 @@ pub(super) fn check_initial(
     let estimated = file.parameters.iter().filter(|(_, parameter)| parameter.initial);
     let estimated = estimated.map(|(name, _)| (name, file.context.places.parameter(name)));
     let set = entry.start.keys().map(|name| (name, entry.places.at(&["start", name])));
+    let is_known = |name: &String| {
+        let declared = model.declarations.get(name.as_str());
+        declared.is_some_and(|own| own.variability < Variability::Discrete)
+    };
+    if let Some((name, place)) = estimated.clone().chain(set.clone()).find(|own| is_known(own.0)) {
+        let fault = fault!(
+            BAD_OPTION, "`{name}` is a parameter of `{}`, which has a value, not an initial one", file.model;
+            help: "a value for one experiment is written in `set`; one that is estimated needs no `initial`"
+        );
+        return Err(vec![fault.at(place)]);
+    }
     let states: Vec<String> = model.state_names().map(ToString::to_string).collect();
     let is_other = |name: &String| {
         let array = || name.strip_suffix(']').and_then(|inner| inner.rsplit_once('['));

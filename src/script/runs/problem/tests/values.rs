@@ -533,3 +533,22 @@ fn parameters_without_effect_are_no_missed_minimum() {
     assert!(text.contains("No parameter changes the simulated values"), "{text}");
     assert!(!text.contains("not a minimum"), "{text}");
 }
+
+/// A parameter has no initial value: neither in `start` nor as one that is estimated.
+#[test]
+fn initial_values_of_parameters_are_refused() {
+    let model = "model Own\n  parameter Real k = 1, A = 2;\n  Real x(start = A, fixed = true);\nequation\n  \
+                 der(x) = -k*x;\nend Own;\n";
+    let data = table("time,x", |t| (-t).exp().to_string());
+    for (parameter, start) in
+        [("A = { min = 1, max = 3, initial = true }", ""), ("", "start = { A = 3 }")]
+    {
+        let problem = format!(
+            "model = \"Own\"\nfiles = [\"m.mo\"]\n[parameters]\nk = {{ min = 0.1, max = 10 }}\n\
+             {parameter}\n[[experiment]]\ndata = \"d.csv\"\noutputs = {{ x = \"x\" }}\n{start}\n"
+        );
+        let files = [("p.toml", problem), ("d.csv", data.clone()), ("m.mo", model.to_owned())];
+        let said = refusal_of(&files);
+        assert!(said.contains("`A` is a parameter of `Own`, which has a value"), "{said}");
+    }
+}
