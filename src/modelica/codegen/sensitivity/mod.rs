@@ -12,9 +12,11 @@
 //!                  s⁺ = d⁺ − ẋ⁺ dτ
 //! ```
 //!
-//! Discrete variables keep their total derivative d⁺ between events. All derivatives are made from
-//! the expressions of the model, column by column; torn loops by the theorem of implicit functions,
-//! with their Jacobians. External functions alone are differentiated by central differences, as in
+//! Discrete variables keep their total derivative d⁺ between events. There is a column for each
+//! parameter that the solution depends on (`directions`). Between events f_y is the Jacobian of the
+//! integrator, and code computes f_p alone (`right_sides`); all else is made from the expressions of
+//! the model, column by column; torn loops by the theorem of implicit functions, with their
+//! Jacobians. External functions alone are differentiated by central differences, as in
 //! the Jacobian.
 //!
 //! References: [Brenan, Campbell & Petzold 1996](gapilib_base::bibliography#brenan-campbell-petzold-1996);

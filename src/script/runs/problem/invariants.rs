@@ -1,9 +1,9 @@
 //! Linear invariants: sums of states that the equations conserve, such as the total of a substance that
 //! reactions only convert.
 //!
-//! Right-hand sides are sums of the same terms (rates of reactions) with constant factors. The
-//! invariants are the left null vectors of the matrix of these factors, which for a reaction
-//! network is the stoichiometric matrix.
+//! Right-hand sides are expanded to sums of the same terms with factors of numbers and parameters. The
+//! invariants are the left null vectors of the matrix of these factors, which for a reaction network
+//! is the stoichiometric matrix. The rank of the Jacobian shows whether one was missed.
 //!
 //! Reference: [Heinrich & Schuster 1996](gapilib_base::bibliography#heinrich-schuster-1996), §3.1.
 
@@ -90,7 +90,7 @@ impl Invariant {
 }
 
 /// The invariants of a model; `varied`: parameters that are not 0 although the model has them so. `None`
-/// where a factor is no product of powers of parameters.
+/// where a factor is not a number times powers of parameters.
 pub(super) fn invariants(model: &CausalizedDae, varied: &[VarId]) -> Option<Vec<Invariant>> {
     let expansion = Expansion { model, values: assigned(model), varied };
     let derivatives: Vec<Terms> = model
