@@ -117,7 +117,7 @@ fn loaded_from(session: &mut Session) -> String {
 
 /// Checks a script without running it; whether nothing is wrong.
 fn check_script(session: &mut Session, path: &Path) -> bool {
-    session.grant_input(path);
+    session.world.grant_input(path);
     let name = path.display().to_string();
     let bytes = match super::named::read(path) {
         Ok(bytes) => bytes,

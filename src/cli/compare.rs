@@ -62,7 +62,7 @@ pub(super) fn compare(arguments: &CompareArgs, global: &Global) -> ExitCode {
 fn run(session: &mut Session, arguments: &CompareArgs) -> Result<Vec<Compared>, Diagnostic> {
     let result = read_results(session, &arguments.result)?;
     let reference = read_results(session, &arguments.reference)?;
-    let list = arguments.signals.as_deref().map(|path| session.read_text(path)).transpose();
+    let list = arguments.signals.as_deref().map(|path| session.world.read_text(path)).transpose();
     let list = list.map_err(|fault| fault.at(Span::NONE))?;
     let signals = results::signals_to_compare(&reference, list.as_deref());
     results::compare(&result, &reference, &signals, arguments.tolerance)
@@ -72,7 +72,7 @@ fn run(session: &mut Session, arguments: &CompareArgs) -> Result<Vec<Compared>, 
 fn read_results(session: &Session, path: &Path) -> Result<ResultTable, Diagnostic> {
     let read = || {
         let format = results::format_of_file(&path.to_string_lossy())?;
-        format.read(&session.read_bytes(path)?)
+        format.read(&session.world.read_bytes(path)?)
     };
     read().map_err(|fault: Fault| {
         fault.help(format!("the file is `{}`", path.display())).at(Span::NONE)

@@ -67,7 +67,7 @@ pub(super) fn states(arguments: &EstimateArgs, global: &Global) -> ExitCode {
         Ok((session, _)) => session,
         Err(code) => return code,
     };
-    session.grant_input(&arguments.problem);
+    session.world.grant_input(&arguments.problem);
     if let Some(values) = &arguments.values {
         session.world.grant(Grant::Read(values));
     }
@@ -144,8 +144,8 @@ fn unit_of<'t>(table: &'t ResultTable, name: &str) -> &'t str {
 
 fn write(session: &mut Session, path: &Path, table: &ResultTable) -> Result<(), Fault> {
     let format = results::format_of_file(&path.to_string_lossy())?;
-    session.permit_file(path);
-    session.write_results(path, format.as_ref(), table)?;
+    session.world.permit_file(path);
+    session.world.write_results(path, format.as_ref(), table)?;
     session.print(&format!("written to {}\n", path.display()));
     Ok(())
 }
@@ -156,8 +156,8 @@ fn draw(session: &mut Session, path: &Path, found: &Estimated) -> Result<(), Fau
     let panels = found.shown.iter().map(|own| panel(&found.table, own));
     let figure =
         Figure { title: found.experiment.clone(), panels: panels.collect::<Result<_, _>>()? };
-    session.permit_file(path);
-    session.write_file(path, &figure.picture(picture)?)?;
+    session.world.permit_file(path);
+    session.world.write_file(path, &figure.picture(picture)?)?;
     session.print(&format!("figure: {}\n", path.display()));
     Ok(())
 }

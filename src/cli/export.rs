@@ -41,7 +41,7 @@ pub(super) fn export(arguments: &ExportArgs, global: &Global) -> ExitCode {
         Ok((session, _)) => session,
         Err(code) => return code,
     };
-    session.grant_input(&arguments.problem);
+    session.world.grant_input(&arguments.problem);
     let made = petab(&mut session, &arguments.problem)
         .and_then(|files| write(&files, &arguments.petab, arguments.overwrite));
     match made {

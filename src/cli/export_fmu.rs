@@ -123,18 +123,18 @@ fn run(
         co_simulation: arguments.kind != Kind::Me,
     };
     let bytes = exported(session, class, Form { version, kinds, name: None })?;
-    session.permit_file(output);
-    session.write_file(output, &bytes).map_err(one)?;
+    session.world.permit_file(output);
+    session.world.write_file(output, &bytes).map_err(one)?;
     let size = bytes.len() as f64 / 1e6;
     session.print(&format!("wrote {} ({size:.1} MB)\n", output.display()));
     if let Some(path) = &arguments.set_file {
         let copy = beside(output);
-        let own = session.read_bytes(path).map_err(one)?;
+        let own = session.world.read_bytes(path).map_err(one)?;
         let changed = set.filter(|_| !arguments.set.is_empty()).map(|set| set.to_xml());
         let text = changed.map_or(own, String::into_bytes);
         let is_there = session.world.exists(&copy);
-        session.permit_file(&copy);
-        session.write_file(&copy, &text).map_err(one)?;
+        session.world.permit_file(&copy);
+        session.world.write_file(&copy, &text).map_err(one)?;
         let place = if is_there { ", in the place of the former file" } else { "" };
         session.print(&format!("wrote {}{place}\n", copy.display()));
     }

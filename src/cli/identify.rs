@@ -214,7 +214,7 @@ pub(super) fn solve_one(
             &imported
         }
     };
-    session.grant_input(problem);
+    session.world.grant_input(problem);
     if let Some(file) = &arguments.watch {
         session.world.grant(Grant::Read(file));
     }

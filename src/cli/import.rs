@@ -98,7 +98,7 @@ fn imported(
     folder: &Path,
     overwrite: bool,
 ) -> Result<PathBuf, Vec<Diagnostic>> {
-    session.grant_input(file);
+    session.world.grant_input(file);
     let text = read(file).map_err(one)?;
     let files = match is_petab(file) {
         true => problem(session, file, &text)?,

@@ -155,8 +155,8 @@ fn run(
 }
 
 fn write(session: &mut Session, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-    session.permit_file(path);
-    session.write_file(path, bytes)?;
+    session.world.permit_file(path);
+    session.world.write_file(path, bytes)?;
     session.print(&format!("wrote {}\n", path.display()));
     Ok(())
 }

@@ -55,8 +55,8 @@ pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
     session.world.grant(Grant::Named(&output));
-    session.grant_input(&arguments.data);
-    session.grant_input(&arguments.model);
+    session.world.grant_input(&arguments.data);
+    session.world.grant_input(&arguments.model);
     let options = options(arguments, &output);
     let drafted =
         draft(&mut session, &options).and_then(|draft| answered(&mut session, options, draft));

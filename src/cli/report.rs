@@ -95,10 +95,10 @@ fn draw(session: &mut Session, folder: &Path, page: Option<&Path>) -> Result<(),
     let folder = output::latest_of(folder);
     // The page in the folder of the results is no more than the rest of it.
     session.world.grant(Grant::Own(&folder));
-    let read = |name: &str| session.read_text(&folder.join(name));
+    let read = |name: &str| session.world.read_text(&folder.join(name));
     let (json, history) = (read("result.json")?, read("history.csv")?);
     let solution = Solution::read(&json, &history, &read("individuals.csv")?)?;
-    page.into_iter().for_each(|page| session.permit_file(page));
+    page.into_iter().for_each(|page| session.world.permit_file(page));
     let page = page.map_or_else(|| folder.join("report.html"), Path::to_owned);
     session.print(&solution.text());
     write(session, &page, &solution)?;

@@ -120,11 +120,11 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
         session.output.transcript = Some(Transcript::default());
     }
     let trace = arguments.trace.as_deref();
-    trace.into_iter().for_each(|path| session.permit_file(path));
+    trace.into_iter().for_each(|path| session.world.permit_file(path));
     if let Some(fault) = trace.and_then(|path| session.trace_to(path).err()) {
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
-    session.grant_script(script);
+    session.world.grant_script(script);
     if session::lists_permissions(&mut session, global) {
         return ExitCode::SUCCESS;
     }

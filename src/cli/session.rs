@@ -25,7 +25,7 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
         }
     }
     let current = session.world.current_dir();
-    session.grant_models(&current);
+    session.world.grant_models(&current);
     for folder in cache_folder::closed() {
         session.world.grant(Grant::Deny(&folder));
     }
@@ -78,7 +78,7 @@ fn grant_asked(session: &mut Session, global: &Global) {
         session.world.grant(Grant::Deny(folder));
     }
     for name in &global.allow_env {
-        session.allow_variable(name);
+        session.world.allow_variable(name);
     }
 }
 
@@ -116,7 +116,7 @@ pub(super) fn with_files_in(
     let mut session = open(global, world);
     let (mut names, mut errors) = (Vec::new(), Vec::new());
     for file in files {
-        session.grant_input(file);
+        session.world.grant_input(file);
         offer_neighbours(&mut session, file);
         match session.load_path(file) {
             Ok(loaded) => names.extend(loaded),
@@ -181,7 +181,7 @@ pub(super) fn is_class(text: &str) -> bool {
 /// Lists what scripts and models may do, if that is asked for: then nothing else is done.
 pub(super) fn lists_permissions(session: &mut Session, global: &Global) -> bool {
     if global.show_permissions {
-        let text = session.permissions();
+        let text = session.world.listed_permissions();
         session.print(&text);
     }
     global.show_permissions

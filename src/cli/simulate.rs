@@ -284,8 +284,8 @@ fn write_or_show(
 ) -> Result<(), Fault> {
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
-            session.permit_file(path);
-            session.write_results(path, format.as_ref(), table)?;
+            session.world.permit_file(path);
+            session.world.write_results(path, format.as_ref(), table)?;
             session.print(&written(path));
         }
         _ if !arguments.plot.is_empty() => {}
@@ -331,7 +331,7 @@ fn begin_with(
     path: &Path,
     time: Option<f64>,
 ) -> Result<f64, Fault> {
-    let bytes = session.read_bytes(path)?;
+    let bytes = session.world.read_bytes(path)?;
     let table = results::format_of_file(&path.to_string_lossy())?.read(&bytes)?;
     let last = || table.time.last().copied().unwrap_or(0.0);
     let time = time.unwrap_or_else(last);
@@ -436,8 +436,8 @@ fn draw(
     let figure = Figure { title: name.to_owned(), panels: panels.collect::<Result<_, _>>()? };
     match arguments.figure.as_ref().zip(picture) {
         Some((path, format)) => {
-            session.permit_file(path);
-            session.write_file(path, &figure.picture(format)?)?;
+            session.world.permit_file(path);
+            session.world.write_file(path, &figure.picture(format)?)?;
             session.print(&format!("figure: {}\n", path.display()));
         }
         None => session.print(&figure.text(CHART.0, CHART.1)),

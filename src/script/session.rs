@@ -1,8 +1,7 @@
 //! The session: the parts that last from one statement to the next.
 
-use super::access::outdated::Outdated;
-use super::access::policy::Grant;
-use super::access::process::Process;
+use super::access::SessionWorld;
+use super::access::faults::cannot;
 use super::builtins::extensions::Extensions;
 use super::language::execution::{Execution, Iteration, RunStatus, Stop};
 use super::language::follow_up::FollowUps;
@@ -16,11 +15,12 @@ use super::models::translated::Translated;
 use super::options::{Dialect, Options, Strictness};
 use super::world::{Store, World};
 use crate::diag::{Code, Diagnostic, Fault};
+use crate::errors::INTERRUPTED;
 use crate::name::Ident;
-use crate::source::{SourceMap, Span};
+use crate::source::{SourceId, SourceMap, Span};
+use crate::syntax;
 use crate::value::Value;
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Work that is done when the outermost script ends.
@@ -28,12 +28,10 @@ type AtEnd = fn(&mut Session) -> Result<(), Diagnostic>;
 
 /// A session. It owns its world; nothing else reaches the outside.
 pub struct Session {
-    /// The outside.
-    pub world: Box<dyn World>,
+    /// The outside, as scripts may use it.
+    pub world: SessionWorld,
     /// The text of all files read so far.
     pub sources: SourceMap,
-    /// Files in memory, by absolute paths: they take the place of those on the disk.
-    pub(super) given: BTreeMap<PathBuf, Arc<[u8]>>,
     /// Where translated models are kept from one process to the next, if they are.
     pub storage: Option<Arc<dyn Store>>,
     /// What it answers.
@@ -45,8 +43,6 @@ pub struct Session {
     pub(super) parsed: ParsedScripts,
     pub(super) follow_ups: FollowUps,
     pub(super) statuses: Statuses,
-    pub(super) process: Process,
-    pub(super) outdated: Outdated,
     pub(super) classes: Classes,
     pub(super) models: CompiledModels,
     /// The dialect that the outermost script shows, where none was asked for.
@@ -59,9 +55,8 @@ impl Session {
     /// A session in a world, without variables or classes.
     pub fn new(world: Box<dyn World>) -> Session {
         Session {
-            world,
+            world: SessionWorld::new(world),
             sources: SourceMap::default(),
-            given: BTreeMap::new(),
             storage: None,
             output: Output::default(),
             options: Options::default(),
@@ -70,8 +65,6 @@ impl Session {
             parsed: ParsedScripts::default(),
             follow_ups: FollowUps::default(),
             statuses: Statuses::default(),
-            process: Process::default(),
-            outdated: Outdated::default(),
             classes: Classes::default(),
             models: CompiledModels::default(),
             recognized: Dialect::default(),
@@ -85,12 +78,7 @@ impl Session {
     pub fn with_options(mut self, options: Options) -> Session {
         self.options = options;
         self.recognized = Dialect::default();
-        if options.permissions.read {
-            self.world.grant(Grant::ReadAll);
-        }
-        if options.permissions.write {
-            self.world.grant(Grant::WriteAll);
-        }
+        self.world.permit(options.permissions);
         self
     }
 
@@ -179,6 +167,29 @@ impl Session {
         self.report(diagnostic);
     }
 
+    /// A negative answer: `true`, or `false` and the fault reported.
+    pub fn succeeded(&mut self, result: Result<(), Fault>) -> Value {
+        Value::Boolean(self.or_report(result).is_some())
+    }
+
+    /// The value, or `None` and the fault reported.
+    pub(crate) fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
+        result.map_err(|fault| self.report_fault(fault)).ok()
+    }
+
+    /// The same where several things may be wrong.
+    pub(crate) fn or_report_all<T>(&mut self, result: Result<T, Vec<Diagnostic>>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(errors) => {
+                // The script that is being stopped says that it was interrupted.
+                let reported = errors.into_iter().filter(|error| error.code != INTERRUPTED);
+                reported.for_each(|error| self.report(error));
+                None
+            }
+        }
+    }
+
     /// Says something once that is no error, with the place of the call.
     pub fn note(&mut self, code: Code, message: String) {
         let diagnostic = Fault::new(code, message).at(self.call_site()).note();
@@ -189,6 +200,21 @@ impl Session {
     pub fn warn(&mut self, code: Code, message: String) {
         let diagnostic = Fault::new(code, message).at(self.call_site()).warning();
         self.report(diagnostic);
+    }
+
+    /// Reads a text file among the sources, under its path relative to the working directory.
+    pub(crate) fn add_file(&mut self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
+        self.world.check_current(path)?;
+        let bytes = self.world.bytes_of(path).map_err(|error| cannot("read", path, &error))?;
+        let (text, warning) = syntax::decode(&bytes);
+        let current = self.world.current_dir();
+        let shown = path.strip_prefix(&current).unwrap_or(path).display().to_string();
+        let text: Arc<str> = text.into();
+        let source = self.sources.add(shown, text.clone());
+        if let Some(warning) = warning {
+            self.report(warning.at(Span::new(source, 0, 0)).warning());
+        }
+        Ok((source, text))
     }
 
     /// What remains to be done when the outermost script ends, and how it ended.

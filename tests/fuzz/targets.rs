@@ -338,7 +338,7 @@ pub(crate) fn visit_stranger(bytes: &[u8]) {
         (Box::new(screen), Arc::default()),
     );
     if let Ok(mut session) = session {
-        session.grant_script(&script);
+        session.world.grant_script(&script);
         _ = session.run_file(&script);
     }
     let text = fs::read_to_string(&script).unwrap_or_default();

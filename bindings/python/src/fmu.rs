@@ -91,7 +91,7 @@ impl Fmu {
         let file = path.clone();
         let method = is_co_simulation.then_some(CO_SIMULATION);
         let unit = worker.call(py, move |engine| {
-            engine.grant_input(&file);
+            engine.world.grant_input(&file);
             imported::import(engine, &file, method)
         })?;
         let unit = unit.map_err(|fault| raised_fault(py, fault))?;

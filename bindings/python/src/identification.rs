@@ -101,12 +101,12 @@ fn solved(engine: &mut Engine, task: Task, options: RunOptions) -> Answer<(Solve
     let folder = folder.map_err(|error| vec![Reported::refusal(&error)])?;
     engine.world.grant(Grant::Own(&folder.path));
     engine.world.grant(Grant::Read(&task.problem));
-    engine.grant_input(&task.problem);
+    engine.world.grant_input(&task.problem);
     for (name, text) in &task.texts {
         let loaded = engine.load_text(name, text);
         checked(engine, loaded)?;
     }
-    task.given.into_iter().for_each(|(path, bytes)| engine.give(&path, bytes));
+    task.given.into_iter().for_each(|(path, bytes)| engine.world.give(&path, bytes));
     let options = RunOptions { folder: folder.path.clone(), ..options };
     let solution = solve(engine, &task.problem, &options);
     let solution = checked(engine, solution)?;

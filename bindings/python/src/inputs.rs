@@ -33,8 +33,8 @@ impl Inputs {
     /// Lets the session read them; the file and the interpolation.
     pub(crate) fn open(&self, engine: &mut Engine) -> (&Path, Option<&str>) {
         match &self.bytes {
-            Some(bytes) => engine.give(&self.path, bytes.clone()),
-            None => engine.grant_input(&self.path),
+            Some(bytes) => engine.world.give(&self.path, bytes.clone()),
+            None => engine.world.grant_input(&self.path),
         }
         (&self.path, self.interpolation.as_deref())
     }

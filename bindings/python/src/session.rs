@@ -91,7 +91,7 @@ impl Session {
     /// Loads a Modelica file, or a package from its folder; the names of its classes.
     fn load(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
         self.ask(py, move |engine| {
-            engine.grant_input(&path);
+            engine.world.grant_input(&path);
             let names = engine.load_path(&path);
             checked(engine, names.map(|names| names.iter().map(ToString::to_string).collect()))
         })
@@ -122,7 +122,7 @@ impl Session {
     /// Runs a script.
     fn run(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         self.ask(py, move |engine| {
-            engine.grant_input(&path);
+            engine.world.grant_input(&path);
             engine.output.messages.clear();
             let status = engine.run_file(&path);
             ended(engine, status.errors).map(|()| status.interrupted)

@@ -114,7 +114,7 @@ pub(crate) fn answered(mut run: Run) -> Result<Answer, String> {
 /// Prepares the recording of the steps, and the changes.
 fn prepare(session: &mut Session, run: &Run) -> Result<(), String> {
     if run.live {
-        session.permit_file(Path::new(TRACE));
+        session.world.permit_file(Path::new(TRACE));
         session.trace_to(Path::new(TRACE)).map_err(|fault| fault.message)?;
     }
     for Change { generation, statement } in &run.changes {

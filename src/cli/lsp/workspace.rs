@@ -235,10 +235,10 @@ impl Workspace {
     fn check_user_of_files(&mut self, parsed: &Parsed, all: &Documents) -> Vec<Diagnostic> {
         let open = all.values().filter(|document| document.is_modelica());
         let open: Vec<_> = open.filter_map(|own| Some((own.path.as_ref()?, &own.text))).collect();
-        open.iter().for_each(|(path, text)| self.session.give(path, text.as_bytes()));
+        open.iter().for_each(|(path, text)| self.session.world.give(path, text.as_bytes()));
         let mut found = self.check_script(parsed);
         found.extend(self.check_problem(parsed));
-        open.iter().for_each(|(path, _)| self.session.take_back(path));
+        open.iter().for_each(|(path, _)| self.session.world.take_back(path));
         found
     }
 
@@ -248,7 +248,7 @@ impl Workspace {
         let path = parsed.document.path.as_ref();
         // The user has opened this file, but not those that it names.
         if let Some(path) = path {
-            self.session.grant_input(path);
+            self.session.world.grant_input(path);
         }
         check_script(&mut self.session, script, path.and_then(|path| path.parent()))
     }
@@ -259,7 +259,7 @@ impl Workspace {
         let Some(path) = document.path.as_ref().filter(|_| document.is_problem()) else {
             return Vec::new();
         };
-        self.session.grant_input(path);
+        self.session.world.grant_input(path);
         problem::check(&mut self.session, path, (parsed.source, &document.text))
     }
 

@@ -134,8 +134,8 @@ fn load_named(session: &mut Session, references: &Path) -> Result<(), Vec<Diagno
 fn write(session: &mut Session, path: &Path, rows: &[Row]) -> Result<(), Fault> {
     let is_csv = path.extension().is_some_and(|extension| extension == "csv");
     let text = if is_csv { report::csv(rows) } else { report::json(rows) };
-    session.permit_file(path);
-    session.write_file(path, text.as_bytes())
+    session.world.permit_file(path);
+    session.world.write_file(path, text.as_bytes())
 }
 
 /// The cases whose work has ended, and how far all of it is.

@@ -1,16 +1,14 @@
 //! Files as commands see them: found, read and written with errors that say what to do.
 
+use super::SessionWorld;
 use super::faults::{cannot, drive_help, escape_help, plain, shown};
 use super::policy::{Access, Grant, Refusal, refusal_of};
-use crate::Session;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::errors::FILE_ERROR;
-use crate::language::transcript::PROMPT;
 use crate::results::{self, Format, ResultTable};
 use crate::syntax;
-use crate::value::Value;
-use crate::world::{FileReader, normalized};
+use crate::world::{FileReader, World, normalized};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -38,7 +36,7 @@ impl FileReader for Given {
     }
 }
 
-impl Session {
+impl SessionWorld {
     /// The file or directory that a script means: relative to the working directory, else to the
     /// folders of the scripts being run, innermost first. `None` if it is nowhere; one that may not be
     /// read is as if it were not there.
@@ -50,7 +48,7 @@ impl Session {
     fn places_of(&self, path: &Path) -> impl Iterator<Item = PathBuf> {
         let path = self.expanded(path);
         let first = self.world.absolute(&path);
-        let folders = self.execution.folders();
+        let folders = self.folders();
         std::iter::once(first).chain(folders.map(move |folder| normalized(&folder.join(&path))))
     }
 
@@ -80,7 +78,7 @@ impl Session {
     }
 
     /// The files as libraries read them, later and from any thread: with what was given.
-    pub(crate) fn reader(&self) -> Arc<dyn FileReader> {
+    pub(crate) fn reader_with_given(&self) -> Arc<dyn FileReader> {
         match self.given.is_empty() {
             true => self.world.reader(),
             false => Arc::new(Given { files: self.world.reader(), given: self.given.clone() }),
@@ -103,7 +101,7 @@ impl Session {
         Ok(syntax::decode(&self.read_bytes(path)?).0)
     }
 
-    /// As [`Session::find_file`], for reading.
+    /// As [`SessionWorld::find_file`], for reading.
     ///
     /// # Errors
     /// A command was to write this file and did not.
@@ -139,25 +137,28 @@ impl Session {
         path
     }
 
+    /// The command that was going to write this file has ended: whether it has not written it.
+    pub(crate) fn end_expected(&mut self, file: &Path, reason: &str) -> bool {
+        self.outdated.end(file, reason)
+    }
+
     /// Rewrites a file, with the directories it lies in.
     pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
-        self.write_by(&path, &mut |session| {
-            session.world.write_with(&path, &mut |to| to.write_all(bytes))
-        })
+        self.write_by(&path, &mut |world| world.write_with(&path, &mut |to| to.write_all(bytes)))
     }
 
     /// The same, safe against a power cut: for journals and what a run comes to. Of what scripts write in
     /// loops it would take far longer than the simulations.
     pub(crate) fn write_safely(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
-        self.write_by(&path, &mut |session| session.world.write(&path, bytes))
+        self.write_by(&path, &mut |world| world.write(&path, bytes))
     }
 
     /// Appends to a file.
     pub(crate) fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
-        self.write_by(&path, &mut |session| session.world.append(&path, bytes))
+        self.write_by(&path, &mut |world| world.append(&path, bytes))
     }
 
     /// Rewrites a file of results, with the directories it lies in. A file with former results
@@ -171,8 +172,8 @@ impl Session {
         table.check()?;
         let path = self.expanded(path);
         self.grant_replacement(&path);
-        self.write_by(&path, &mut |session| {
-            session.world.write_with(&path, &mut |to| format.write_to(table, to))
+        self.write_by(&path, &mut |world| {
+            world.write_with(&path, &mut |to| format.write_to(table, to))
         })
     }
 
@@ -207,10 +208,16 @@ impl Session {
         self.write_file(path, bytes)
     }
 
-    /// Rewrites the log of a session, in place of one that another run has written.
-    pub(crate) fn write_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+    /// Rewrites the log of a session, in place of one that another run has written: logs begin with
+    /// `prompt`.
+    pub(crate) fn write_log(
+        &mut self,
+        path: &Path,
+        bytes: &[u8],
+        prompt: &str,
+    ) -> Result<(), Fault> {
         let expanded = self.expanded(path);
-        self.grant_replacement_of(&expanded, |start| start.starts_with(PROMPT.as_bytes()));
+        self.grant_replacement_of(&expanded, |start| start.starts_with(prompt.as_bytes()));
         self.write_file(path, bytes)
     }
 
@@ -234,11 +241,11 @@ impl Session {
     fn write_by(
         &mut self,
         path: &Path,
-        write: &mut dyn FnMut(&mut Session) -> io::Result<()>,
+        write: &mut dyn FnMut(&mut dyn World) -> io::Result<()>,
     ) -> Result<(), Fault> {
         let written = self.may(Access::Write, path).and_then(|()| self.make_parents(path));
-        let written =
-            written.and_then(|()| write(self).map_err(|error| cannot("write", path, &error)));
+        let written = written
+            .and_then(|()| write(&mut *self.world).map_err(|error| cannot("write", path, &error)));
         let path = normalized(&self.world.absolute(path));
         match &written {
             Ok(()) => self.outdated.note_written(&path),
@@ -274,7 +281,7 @@ impl Session {
         }
         let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", shown(path)));
         let fault = fault.help_if(escape_help(path)).help_if(drive_help(path));
-        let start = self.execution.start_of_paths(&self.world.current_dir());
+        let start = self.starts.in_words(&self.world.current_dir());
         fault.help_if(self.similar_file(path)).help(start)
     }
 
@@ -305,15 +312,5 @@ impl Session {
     /// Makes a directory and the ones it lies in.
     pub(crate) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
         self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
-    }
-
-    /// A negative answer: `true`, or `false` and the fault reported.
-    pub fn succeeded(&mut self, result: Result<(), Fault>) -> Value {
-        Value::Boolean(self.or_report(result).is_some())
-    }
-
-    /// The value, or `None` and the fault reported.
-    pub(crate) fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
-        result.map_err(|fault| self.report_fault(fault)).ok()
     }
 }

@@ -5,15 +5,27 @@
 //! is granted as [`Grant::Found`]: no link leads elsewhere. What files of others name, such as a
 //! problem or a script, is not granted at all: it must lie in what is granted already.
 
+use super::SessionWorld;
 use super::faults::{cannot, escape_help, shown};
+use super::permissions::Permissions;
 use super::policy::{Access, Grant};
-use crate::Session;
 use crate::diag::Fault;
 use crate::errors::FILE_ERROR;
 use crate::fault;
 use std::path::Path;
 
-impl Session {
+impl SessionWorld {
+    /// What the caller of the scripts allows them from here on.
+    pub(crate) fn permit(&mut self, permissions: Permissions) {
+        self.permissions = permissions;
+        if permissions.read {
+            self.world.grant(Grant::ReadAll);
+        }
+        if permissions.write {
+            self.world.grant(Grant::WriteAll);
+        }
+    }
+
     /// A fault unless a file of this path may be read, written, made or removed.
     pub(crate) fn may(&self, access: Access, path: &Path) -> Result<(), Fault> {
         let verb = if access == Access::Read { "read" } else { "change" };
@@ -73,8 +85,8 @@ impl Session {
     }
 
     /// What scripts and models may do, as a table for people.
-    pub fn permissions(&self) -> String {
-        let is_free = self.options.permissions.system;
+    pub fn listed_permissions(&self) -> String {
+        let is_free = self.permissions.system;
         let variables = if is_free { "all".to_owned() } else { self.process.listed() };
         let programs = if is_free { "all" } else { "none" };
         let mut rows = self.world.permissions();
@@ -92,6 +104,6 @@ impl Session {
 
     /// The content of an environment variable; `None` if it is not set.
     pub(crate) fn environment_variable(&self, name: &str) -> Result<Option<String>, Fault> {
-        self.process.variable(|name| self.world.env(name), self.options.permissions, name)
+        self.process.variable(|name| self.world.env(name), self.permissions, name)
     }
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Environment variables that hold no secrets: folders, languages, the machine, the tools that
 /// scripts are written for. Secrets have all names there are.
-pub(crate) const HARMLESS: &[&str] = &[
+const HARMLESS: &[&str] = &[
     "APPDATA",
     "COMPUTERNAME",
     "DYMOLA",
@@ -68,7 +68,7 @@ pub(crate) struct Process {
 
 impl Process {
     /// Lets an environment variable be read.
-    pub(crate) fn allow(&mut self, name: &str) {
+    pub(super) fn allow(&mut self, name: &str) {
         self.allowed.insert(name.to_owned());
     }
 
@@ -79,7 +79,7 @@ impl Process {
     }
 
     /// Sets an environment variable, for the scripts and for the programs that they start.
-    pub(crate) fn set(&mut self, name: String, content: String) {
+    pub(super) fn set(&mut self, name: String, content: String) {
         self.variables.insert(name, content);
     }
 
@@ -113,7 +113,7 @@ impl Process {
     ///
     /// # Errors
     /// It may not be started, or cannot be.
-    pub(crate) fn run(
+    pub(super) fn run(
         &self,
         world: &mut dyn Environment,
         permissions: Permissions,

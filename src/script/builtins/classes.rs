@@ -467,7 +467,7 @@ fn save_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         _ => format!("within {};\n", name.parent()),
     };
     let contents = format!("{within}{};\n", print::class(&class));
-    let written = session.write_file(Path::new(&file), contents.as_bytes());
+    let written = session.world.write_file(Path::new(&file), contents.as_bytes());
     Ok(session.succeeded(written))
 }
 

@@ -43,7 +43,7 @@ fn compare_simulation_results(session: &mut Session, mut args: Args) -> Result<V
     let differences = differences(&actual, &expected, &requested, tolerance)?;
     if !log.is_empty() {
         let lines: String = differences.iter().map(|one| format!("{one}\n")).collect();
-        session.write_file(Path::new(&log), lines.as_bytes())?;
+        session.world.write_file(Path::new(&log), lines.as_bytes())?;
     }
     let mut result = vec![match differences.is_empty() {
         true => "Files Equal!".to_owned(),
@@ -127,7 +127,7 @@ fn filter_simulation_results(session: &mut Session, mut args: Args) -> Result<Va
         filtered.series.push(series);
     }
     let bytes = results::format_of_file(&file)?.write(&filtered)?;
-    let written = session.write_file(Path::new(&file), &bytes);
+    let written = session.world.write_file(Path::new(&file), &bytes);
     Ok(session.succeeded(written))
 }
 
@@ -275,5 +275,5 @@ fn write_pair(
         let found = found.map_or(String::new(), |found| found[0].to_string());
         let _ = writeln!(text, "{time},{found},{value}");
     }
-    session.write_file(Path::new(file), text.as_bytes())
+    session.world.write_file(Path::new(file), text.as_bytes())
 }

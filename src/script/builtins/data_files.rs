@@ -70,7 +70,7 @@ end writeMATmatrix;
 /// The columns of a CSV file with their names.
 fn columns(session: &mut Session, args: &mut Args) -> Result<Vec<(String, Vec<f64>)>, Failure> {
     let file: String = args.take("fileName")?;
-    let bytes = session.read_bytes(Path::new(&file))?;
+    let bytes = session.world.read_bytes(Path::new(&file))?;
     let contents = crate::mat::read_csv(&bytes)?;
     Ok(contents.arrays.into_iter().map(|(name, matrix)| (name, matrix.values)).collect())
 }
@@ -167,6 +167,6 @@ fn write_csv_matrix(session: &mut Session, mut args: Args) -> Result<Value, Fail
         }),
     );
     let contents = lines.join("\n") + "\n";
-    let written = session.write_file(Path::new(&file), contents.as_bytes());
+    let written = session.world.write_file(Path::new(&file), contents.as_bytes());
     Ok(session.succeeded(written))
 }

@@ -39,7 +39,7 @@ pub(super) fn answered(session: &mut Session, command: &str) -> Option<i32> {
         }
     };
     if let Some(file) = output {
-        let written = session.write_file(Path::new(&file), b"");
+        let written = session.world.write_file(Path::new(&file), b"");
         session.or_report(written);
     }
     Some(if session.or_report_all(done).is_some() { 0 } else { FAILED })

@@ -181,7 +181,7 @@ fn simulated(
     values: &[f64],
 ) -> Result<Option<Simulated>, Failure> {
     // Each row rewrites the file: that of the row before does not replace it.
-    session.expect_file(&result_path(&request.file));
+    session.world.expect_file(&result_path(&request.file));
     for (name, value) in names.iter().zip(values) {
         model.set(session, name, *value)?;
     }

@@ -49,7 +49,7 @@ pub(super) const OPENMODELICA: Family = Family {
 
 fn path_of(session: &Session, args: &mut Args, name: &str) -> Result<PathBuf, Fault> {
     let path: String = args.take(name)?;
-    Ok(session.find_file(Path::new(&path)).unwrap_or_else(|| PathBuf::from(path)))
+    Ok(session.world.find_file(Path::new(&path)).unwrap_or_else(|| PathBuf::from(path)))
 }
 
 const EXIST: &str = r#"
@@ -61,9 +61,9 @@ end exist;
 
 fn exist(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("name")?;
-    match session.find_file(Path::new(&name)) {
-        Some(found) => Ok(session.kind_of(&found)?.is_some().into()),
-        None => Ok(session.kind_of(Path::new(&name))?.is_some().into()),
+    match session.world.find_file(Path::new(&name)) {
+        Some(found) => Ok(session.world.kind_of(&found)?.is_some().into()),
+        None => Ok(session.world.kind_of(Path::new(&name))?.is_some().into()),
     }
 }
 
@@ -79,7 +79,7 @@ fn list_files(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         let names = session.world.list_dir(&path).map_err(|error| cannot("read", &path, &error))?;
         names.iter().map(|name| format!("{name}\n")).collect()
     } else {
-        session.read_text(&path)?
+        session.world.read_text(&path)?
     };
     session.print_of_script(&listing);
     Ok(Value::nothing())
@@ -102,12 +102,12 @@ fn copy(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 fn copy_file(session: &mut Session, old: &Path, new: &Path, replace: bool) -> Result<(), Fault> {
-    if session.kind_of(new)?.is_some() && !replace {
+    if session.world.kind_of(new)?.is_some() && !replace {
         bail!(FILE_ERROR, "`{}` already exists", new.display(); help: "set `replace = true` to \
             overwrite it");
     }
-    let bytes = session.read_bytes(old)?;
-    session.write_file(new, &bytes)
+    let bytes = session.world.read_bytes(old)?;
+    session.world.write_file(new, &bytes)
 }
 
 const MOVE: &str = r#"
@@ -123,9 +123,9 @@ fn move_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let new = PathBuf::from(args.take::<String>("newName")?);
     let replace: bool = args.take("replace")?;
     // Refused before anything is done.
-    session.may(Access::Write, &old)?;
+    session.world.may(Access::Write, &old)?;
     copy_file(session, &old, &new, replace)?;
-    session.remove_file(&old)?;
+    session.world.remove_file(&old)?;
     Ok(Value::nothing())
 }
 
@@ -137,7 +137,7 @@ end remove;
 
 fn remove(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("name")?);
-    if session.kind_of(&path)?.is_some() {
+    if session.world.kind_of(&path)?.is_some() {
         remove_tree(session, &path)?;
     }
     Ok(Value::nothing())
@@ -151,7 +151,7 @@ fn remove_tree(session: &mut Session, path: &Path) -> Result<(), Fault> {
             remove_tree(session, &path.join(entry))?;
         }
     }
-    session.remove_file(path)
+    session.world.remove_file(path)
 }
 
 const REMOVE_FILE: &str = r#"
@@ -162,9 +162,9 @@ end removeFile;
 
 fn remove_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("fileName")?);
-    match session.kind_of(&path)? {
+    match session.world.kind_of(&path)? {
         Some(true) => bail!(FILE_ERROR, "`{}` is a directory", path.display()),
-        Some(false) => session.remove_file(&path)?,
+        Some(false) => session.world.remove_file(&path)?,
         None => {}
     }
     Ok(Value::nothing())
@@ -178,7 +178,7 @@ end createDirectory;
 
 fn create_directory(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("directoryName")?);
-    session.create_directory(&path)?;
+    session.world.create_directory(&path)?;
     Ok(Value::nothing())
 }
 
@@ -236,8 +236,8 @@ end writeFile;
 fn write_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (name, data): (String, String) = (args.take("fileName")?, args.take("data")?);
     let written = match args.take("append")? {
-        true => session.append_file(Path::new(&name), data.as_bytes()),
-        false => session.write_file(Path::new(&name), data.as_bytes()),
+        true => session.world.append_file(Path::new(&name), data.as_bytes()),
+        false => session.world.write_file(Path::new(&name), data.as_bytes()),
     };
     Ok(session.succeeded(written))
 }
@@ -251,7 +251,7 @@ end readFile;
 
 fn read_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("fileName")?;
-    let read = session.read_text(Path::new(&name));
+    let read = session.world.read_text(Path::new(&name));
     Ok(text(session.or_report(read).unwrap_or_default()))
 }
 
@@ -264,7 +264,7 @@ end regularFileExists;
 
 fn regular_file_exists(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("fileName")?;
-    Ok((session.kind_of(Path::new(&name))? == Some(false)).into())
+    Ok((session.world.kind_of(Path::new(&name))? == Some(false)).into())
 }
 
 const DIRECTORY_EXISTS: &str = r#"
@@ -276,7 +276,7 @@ end directoryExists;
 
 fn directory_exists(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("dirName")?;
-    Ok((session.kind_of(Path::new(&name))? == Some(true)).into())
+    Ok((session.world.kind_of(Path::new(&name))? == Some(true)).into())
 }
 
 const DELETE_FILE: &str = r#"
@@ -287,7 +287,7 @@ end deleteFile;
 "#;
 
 fn delete_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let removed = session.remove_file(Path::new(&args.take::<String>("fileName")?));
+    let removed = session.world.remove_file(Path::new(&args.take::<String>("fileName")?));
     Ok(session.succeeded(removed))
 }
 
@@ -299,7 +299,7 @@ end remove;
 "#;
 
 fn remove_path(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let removed = session.remove_file(Path::new(&args.take::<String>("path")?));
+    let removed = session.world.remove_file(Path::new(&args.take::<String>("path")?));
     Ok(session.succeeded(removed))
 }
 
@@ -311,7 +311,7 @@ end mkdir;
 "#;
 
 fn mkdir(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let made = session.create_directory(Path::new(&args.take::<String>("newDirectory")?));
+    let made = session.world.create_directory(Path::new(&args.take::<String>("newDirectory")?));
     Ok(session.succeeded(made))
 }
 

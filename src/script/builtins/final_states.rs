@@ -28,7 +28,7 @@ pub(super) fn write_final(session: &mut Session) {
     if beginning.is_ok_and(|bytes| FinalState::is_in(&bytes)) {
         session.world.grant(Grant::Replace(&path));
     }
-    if let Err(fault) = session.write_file(&path, text.as_bytes())
+    if let Err(fault) = session.world.write_file(&path, text.as_bytes())
         && !std::mem::replace(&mut session.extension::<LastFinal>().has_warned, true)
     {
         let text = "`importInitial()` continues from the last simulation all the same";
@@ -40,7 +40,7 @@ pub(super) fn write_final(session: &mut Session) {
 
 /// The state in a file; that of the last simulation as it is in memory.
 pub(super) fn final_state(session: &mut Session, file: &str) -> Result<FinalState, Fault> {
-    let found = session.find_file(Path::new(file));
+    let found = session.world.find_file(Path::new(file));
     let known = &session.extension::<LastFinal>().file;
     let is_last = match (known, &found) {
         (Some((path, _)), Some(found)) if path != found => false,
@@ -58,6 +58,6 @@ pub(super) fn final_state(session: &mut Session, file: &str) -> Result<FinalStat
             "there is no final state to continue from: no model has been simulated, or the last \
              simulation failed"
         ),
-        _ => FinalState::read(file, &session.read_bytes(Path::new(file))?),
+        _ => FinalState::read(file, &session.world.read_bytes(Path::new(file))?),
     }
 }

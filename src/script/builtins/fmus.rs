@@ -61,7 +61,7 @@ fn kinds(text: &str) -> Result<Kinds, Fault> {
 fn write(session: &mut Session, class: &str, form: Form<'_>, file: &str) -> bool {
     let done = exported(session, class, form);
     let Some(bytes) = session.or_report_all(done) else { return false };
-    let written = session.write_file(Path::new(file), &bytes);
+    let written = session.world.write_file(Path::new(file), &bytes);
     session.or_report(written).is_some()
 }
 
@@ -220,7 +220,7 @@ fn import_fmu_openmodelica(session: &mut Session, mut args: Args) -> Result<Valu
     let written = format!("{name}.mo");
     let folder = if folder == "<default>" { "" } else { folder.as_str() };
     let path = Path::new(folder).join(&written);
-    let done = session.write_file(&path, placeholder(&name, &file).as_bytes());
+    let done = session.world.write_file(&path, placeholder(&name, &file).as_bytes());
     if session.or_report(done).is_none() {
         return Ok(String::new().into());
     }

@@ -233,7 +233,9 @@ fn drawn(
     let poles = poles_of(&linear, &asked.model)?;
     let at = frequencies([None, None], PER_DECADE, &poles)?;
     let responses = linear.responses(&at)?;
-    session.write_result_file(Path::new(file), &drawing(&at, &responses).picture(picture)?)?;
+    session
+        .world
+        .write_result_file(Path::new(file), &drawing(&at, &responses).picture(picture)?)?;
     Ok(())
 }
 

@@ -67,7 +67,7 @@ pub(super) fn linear_file(name: &str) -> String {
 
 /// Writes the matrices of a linear model.
 pub(super) fn write_dslin(session: &mut Session, file: &str, linear: &Linear) -> Result<(), Fault> {
-    session.write_result_file(Path::new(file), &linear.to_mat()?)
+    session.world.write_result_file(Path::new(file), &linear.to_mat()?)
 }
 
 const LINEARIZE: &str = r#"
@@ -139,7 +139,7 @@ fn translated_and_linearized(
     let linear = linear?;
     let text = as_model(&linear, class).at(at).map_err(|error| vec![error])?;
     let written = write_results(session, &linear.results, file)
-        .and_then(|()| session.write_result_file(Path::new(FILE), text.as_bytes()));
+        .and_then(|()| session.world.write_result_file(Path::new(FILE), text.as_bytes()));
     written.at(at).map_err(|error| vec![error])?;
     Ok(options)
 }

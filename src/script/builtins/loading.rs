@@ -3,8 +3,7 @@
 use super::classes::constant_names;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
-use crate::diag::Diagnostic;
-use crate::errors::{BAD_ARGUMENT, INTERRUPTED};
+use crate::errors::BAD_ARGUMENT;
 use crate::name::Name;
 use crate::syntax::ast::{ClassSpecifier, Element, Section, Visibility};
 use crate::value::Value;
@@ -38,21 +37,6 @@ pub(super) const OPENMODELICA: Family = Family {
     ],
 };
 
-impl Session {
-    /// A negative answer: whether there is a value; the errors are reported if there is none.
-    pub(crate) fn or_report_all<T>(&mut self, result: Result<T, Vec<Diagnostic>>) -> Option<T> {
-        match result {
-            Ok(value) => Some(value),
-            Err(errors) => {
-                // The script that is being stopped says that it was interrupted.
-                let reported = errors.into_iter().filter(|error| error.code != INTERRUPTED);
-                reported.for_each(|error| self.report(error));
-                None
-            }
-        }
-    }
-}
-
 const OPEN_MODEL: &str = r#"
 function openModel "Loads a Modelica file or package."
   input String path;
@@ -65,13 +49,13 @@ end openModel;
 fn open_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("path")?);
     let change: bool = args.take("changeDirectory")?;
-    let found = session.find_file(&path);
+    let found = session.world.find_file(&path);
     let loaded = session.load_path(&path);
     if session.or_report_all(loaded).is_none() {
         return Ok(false.into());
     }
     if let (true, Some(folder)) = (change, found.as_deref().and_then(Path::parent)) {
-        session.trust_results(folder);
+        session.world.trust_results(folder);
         let changed = session.go_to(&folder.to_string_lossy());
         return Ok(session.succeeded(changed));
     }

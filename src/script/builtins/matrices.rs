@@ -26,7 +26,7 @@ pub(super) const FAMILY: Family = Family {
 
 /// Reads a data file.
 pub(super) fn read_file(session: &mut Session, name: &str) -> Result<MatFile, Fault> {
-    let bytes = session.read_bytes(Path::new(name))?;
+    let bytes = session.world.read_bytes(Path::new(name))?;
     mat::read_named(name, &bytes)
 }
 
@@ -181,12 +181,13 @@ fn write(
 ) -> Result<(), Fault> {
     let path = Path::new(file);
     // Where it may not be written, whether it exists stays unknown.
-    let is_kept = append && session.world.exists(path) && session.may(Access::Write, path).is_ok();
+    let is_kept =
+        append && session.world.exists(path) && session.world.may(Access::Write, path).is_ok();
     let mut arrays = match is_kept {
         true => read_file(session, file)?.arrays,
         false => Default::default(),
     };
     arrays.insert(name.to_owned(), new);
     let bytes = mat::write_named(file, &arrays)?;
-    session.write_file(path, &bytes)
+    session.world.write_file(path, &bytes)
 }

@@ -304,7 +304,7 @@ pub(super) fn write_results(
         return Ok(());
     }
     let format = crate::results::format_of_file(file)?;
-    session.write_results(file.as_ref(), format.as_ref(), table)?;
+    session.world.write_results(file.as_ref(), format.as_ref(), table)?;
     super::last_results::note_results(session, file);
     Ok(())
 }

@@ -442,7 +442,7 @@ fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
     plots.drawn += 1;
     let name = format!("plot_{}.svg", plots.drawn);
     let path = session.world.output_dir().join(name);
-    session.write_file(&path, figure.svg().as_bytes())?;
+    session.world.write_file(&path, figure.svg().as_bytes())?;
     if session.options.echo == Echo::Dialogue {
         let [width, height] = CHART;
         session.print(&format!("{}{}\n", figure.text(width, height), path.display()));
@@ -472,7 +472,7 @@ fn export(session: &mut Session, file: &Path) -> Result<(), Fault> {
     let Some(figure) = session.extension::<Plots>().last_drawn.clone() else {
         bail!(BAD_ARGUMENT, "no plot has been drawn")
     };
-    session.write_file(file, &figure.picture(format)?)
+    session.world.write_file(file, &figure.picture(format)?)
 }
 
 const PLOT_EXPRESSION: &str = r#"

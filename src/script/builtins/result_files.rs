@@ -131,7 +131,7 @@ pub(crate) fn begin_writing(
     let Some(command) = command_of(header) else { return false };
     let given = Given { header, values };
     let Some(expected) = expected(session, command, &given) else { return false };
-    let paths = expected.files.iter().map(|file| session.expect_file(file)).collect();
+    let paths = expected.files.iter().map(|file| session.world.expect_file(file)).collect();
     let first_message = session.output.messages.next_number();
     session.extension::<Begun>().0.push(Writing { command, expected, paths, first_message });
     true
@@ -147,7 +147,7 @@ pub(crate) fn end_writing(session: &mut Session, error: Option<&Diagnostic>) {
         None => format!("`{}`, which writes it, failed: {cause}", writing.command),
     };
     let cause = cause.to_owned();
-    let ends = writing.paths.iter().map(|path| session.outdated.end(path, &reason));
+    let ends = writing.paths.iter().map(|path| session.world.end_expected(path, &reason));
     let missing = ends.collect::<Vec<bool>>();
     let is_missing = missing.first().copied().unwrap_or(error.is_some());
     if let (Some(problem), true) = (&writing.expected.problem, is_missing) {

@@ -44,11 +44,11 @@ struct LastRead(Option<(PathBuf, Option<Stamp>, Arc<ResultTable>)>);
 /// The results in a file; without an ending, `.mat` is meant.
 pub(super) fn table(session: &mut Session, name: &str) -> Result<Arc<ResultTable>, Fault> {
     let with_ending = format!("{name}.mat");
-    let found = match session.find_current(Path::new(name))? {
+    let found = match session.world.find_current(Path::new(name))? {
         Some(found) => Some(found),
-        None => session.find_current(Path::new(&with_ending))?,
+        None => session.world.find_current(Path::new(&with_ending))?,
     };
-    let found = found.ok_or_else(|| session.missing_file(Path::new(name)))?;
+    let found = found.ok_or_else(|| session.world.missing_file(Path::new(name)))?;
     let stamp = session.world.stamp(&found);
     if let Some((path, known, table)) = &session.extension::<LastRead>().0
         && *path == found
@@ -57,7 +57,7 @@ pub(super) fn table(session: &mut Session, name: &str) -> Result<Arc<ResultTable
         return Ok(table.clone());
     }
     let format = results::format_of_file(&found.to_string_lossy())?;
-    let table = Arc::new(format.read(&session.read_bytes(&found)?)?);
+    let table = Arc::new(format.read(&session.world.read_bytes(&found)?)?);
     session.extension::<LastRead>().0 = Some((found, stamp, table.clone()));
     Ok(table)
 }
@@ -199,7 +199,7 @@ fn write_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Fail
     table.check().map_err(|fault| Fault::new(BAD_ARGUMENT, fault.message))?;
     let file = trajectory_file(file);
     let format = results::format_of_file(&file)?;
-    let written = session.write_results(Path::new(&file), format.as_ref(), &table);
+    let written = session.world.write_results(Path::new(&file), format.as_ref(), &table);
     Ok(session.succeeded(written))
 }
 

@@ -1,6 +1,7 @@
 //! Settings of the session, and its variables.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::language::transcript::PROMPT;
 use crate::name::Name;
 use crate::value::Value;
 use crate::{Dialect, Session};
@@ -110,7 +111,7 @@ fn variables(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         session.print_of_script(&listing);
         return Ok(true.into());
     }
-    let written = session.write_file(file.as_ref(), listing.as_bytes());
+    let written = session.world.write_file(file.as_ref(), listing.as_bytes());
     Ok(session.succeeded(written))
 }
 
@@ -127,7 +128,7 @@ fn savelog(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         true => session.output.log().statements(&session.sources),
         false => session.output.log().text(&session.sources),
     };
-    let written = session.write_log(file.as_ref(), contents.as_bytes());
+    let written = session.world.write_log(file.as_ref(), contents.as_bytes(), PROMPT);
     Ok(session.succeeded(written))
 }
 

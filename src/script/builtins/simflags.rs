@@ -135,7 +135,7 @@ impl SimulationFlags {
     /// Takes the lines of the files that `-overrideFile` names. What `-override` gives comes later.
     pub(super) fn read_override_files(&mut self, session: &Session) -> Result<(), Fault> {
         for file in std::mem::take(&mut self.override_files) {
-            let text = session.read_text(Path::new(&file))?;
+            let text = session.world.read_text(Path::new(&file))?;
             let own = std::mem::take(self);
             let lines = text.lines().map(str::trim);
             let is_setting =

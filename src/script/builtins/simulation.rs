@@ -343,7 +343,7 @@ fn named_as_in_dymola(mut table: ResultTable) -> ResultTable {
 fn write(session: &mut Session, table: ResultTable, file: &str) -> Result<(), Fault> {
     let path = result_path(file);
     let format = results::format_of_file(&path.to_string_lossy())?;
-    session.write_results(&path, format.as_ref(), &named_as_in_dymola(table))?;
+    session.world.write_results(&path, format.as_ref(), &named_as_in_dymola(table))?;
     super::last_results::note_results(session, &path.to_string_lossy());
     Ok(())
 }

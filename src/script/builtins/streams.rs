@@ -43,7 +43,7 @@ fn print(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if file.is_empty() {
         session.print_of_script(&line);
     } else {
-        session.append_file(Path::new(&file), line.as_bytes())?;
+        session.world.append_file(Path::new(&file), line.as_bytes())?;
     }
     Ok(Value::nothing())
 }
@@ -104,7 +104,7 @@ fn count_lines(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 
 fn lines(session: &mut Session, args: &mut Args) -> Result<Vec<String>, Fault> {
     let file: String = args.take("fileName")?;
-    Ok(session.read_text(Path::new(&file))?.lines().map(str::to_owned).collect())
+    Ok(session.world.read_text(Path::new(&file))?.lines().map(str::to_owned).collect())
 }
 
 const ERROR: &str = r#"

@@ -90,8 +90,7 @@ fn status(session: &mut Session, args: &mut Args, input: &str) -> Result<i32, Fa
     if let Some(status) = executable::answered(session, &command) {
         return Ok(status);
     }
-    let (status, printed) =
-        session.process.run(&mut *session.world, session.options.permissions, &command)?;
+    let (status, printed) = session.world.run_program(&command)?;
     session.print_of_script(&String::from_utf8_lossy(&printed));
     Ok(status)
 }
@@ -115,12 +114,11 @@ fn system_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, F
     }
     let command: String = args.take("callStr")?;
     if let Some(status) = executable::answered(session, &command) {
-        session.write_file(file.as_ref(), b"")?;
+        session.world.write_file(file.as_ref(), b"")?;
         return Ok(i64::from(status).into());
     }
-    let (status, printed) =
-        session.process.run(&mut *session.world, session.options.permissions, &command)?;
-    session.write_file(file.as_ref(), &printed)?;
+    let (status, printed) = session.world.run_program(&command)?;
+    session.world.write_file(file.as_ref(), &printed)?;
     Ok(i64::from(status).into())
 }
 
@@ -133,7 +131,7 @@ end setEnvironmentVariable;
 "#;
 
 fn set_environment_variable(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    session.process.set(args.take("name")?, args.take("content")?);
+    session.world.set_environment_variable(args.take("name")?, args.take("content")?);
     Ok(Value::nothing())
 }
 
@@ -146,7 +144,7 @@ end setEnvironmentVar;
 "#;
 
 fn set_environment_var(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    session.process.set(args.take("var")?, args.take("value")?);
+    session.world.set_environment_variable(args.take("var")?, args.take("value")?);
     Ok(true.into())
 }
 
@@ -181,7 +179,7 @@ end getEnvironmentVariable;
 "#;
 
 fn get_environment_variable(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let content = session.environment_variable(&args.take::<String>("name")?)?;
+    let content = session.world.environment_variable(&args.take::<String>("name")?)?;
     let exist = content.is_some();
     let mut content = content.unwrap_or_default();
     if args.take("convertToSlash")? {
@@ -227,6 +225,6 @@ end getEnvironmentVar;
 "#;
 
 fn get_environment_var(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let content = session.environment_variable(&args.take::<String>("var")?)?;
+    let content = session.world.environment_variable(&args.take::<String>("var")?)?;
     Ok(text(content.unwrap_or_default()))
 }

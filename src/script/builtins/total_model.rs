@@ -56,7 +56,7 @@ fn save_total_model(session: &mut Session, mut args: Args) -> Result<Value, Fail
     }
     let text = total_text(session, &file, &name);
     let Some(text) = session.or_report_all(text) else { return Ok(false.into()) };
-    let written = session.write_file(Path::new(&file), text.as_bytes());
+    let written = session.world.write_file(Path::new(&file), text.as_bytes());
     Ok(session.succeeded(written))
 }
 

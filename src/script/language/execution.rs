@@ -3,7 +3,6 @@
 
 use crate::options::Strictness;
 use crate::source::Span;
-use std::path::{Path, PathBuf};
 
 /// How a run ended.
 ///
@@ -47,10 +46,8 @@ pub type Iteration = (usize, Option<usize>);
 /// Where the execution of scripts is.
 #[derive(Debug, Default)]
 pub struct Execution {
-    /// The folders of the scripts that are being run, outermost first.
-    folders: Vec<PathBuf>,
-    /// The folder of the problem file that is being read, from which its paths start.
-    problem: Option<PathBuf>,
+    /// How many scripts have called each other.
+    scripts: usize,
     stop: Option<Stop>,
     /// Whether the outermost script is a file, not what was typed at a prompt.
     is_file: bool,
@@ -66,37 +63,14 @@ pub struct Execution {
 }
 
 impl Execution {
-    /// A script that lies in this folder begins.
-    pub fn enter(&mut self, folder: PathBuf) {
-        self.folders.push(folder);
+    /// A script begins.
+    pub fn enter(&mut self) {
+        self.scripts += 1;
     }
 
     /// The innermost script ends.
     pub fn leave(&mut self) {
-        self.folders.pop();
-    }
-
-    /// A problem file that lies in this folder is read from here on, or none; what was read before.
-    pub(crate) fn read_problem(&mut self, folder: Option<PathBuf>) -> Option<PathBuf> {
-        std::mem::replace(&mut self.problem, folder)
-    }
-
-    /// Where relative paths start, in words; `working`: the working directory.
-    pub(crate) fn start_of_paths(&self, working: &Path) -> String {
-        let working = working.display();
-        match (&self.problem, self.folders.is_empty()) {
-            (Some(folder), true) if folder.as_os_str().is_empty() => {
-                format!("relative paths start from the folder of the problem file, `{working}`")
-            }
-            (Some(folder), true) => format!(
-                "relative paths start from the folder of the problem file, `{}`",
-                folder.display()
-            ),
-            (None, true) => format!("relative paths start from the working directory `{working}`"),
-            (_, false) => format!(
-                "relative paths start from the working directory `{working}` or the script's folder"
-            ),
-        }
+        self.scripts -= 1;
     }
 
     /// Whether the outermost script is a file from here on.
@@ -106,17 +80,12 @@ impl Execution {
 
     /// Whether a statement of a text that is no file is being executed, not one of a script that it runs.
     pub fn is_typed(&self) -> bool {
-        !self.is_file && self.folders.len() <= 1
+        !self.is_file && self.scripts <= 1
     }
 
     /// How many scripts have called each other.
     pub fn scripts(&self) -> usize {
-        self.folders.len()
-    }
-
-    /// The folders of the scripts that are being run, innermost first.
-    pub fn folders(&self) -> impl Iterator<Item = &Path> {
-        self.folders.iter().rev().map(PathBuf::as_path)
+        self.scripts
     }
 
     /// Why execution stops, if it does.

@@ -206,27 +206,27 @@ impl ScriptHost for Session {
 impl Outside for Session {
     fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
         let path = self.resource(path)?;
-        self.read_bytes(&path)
+        self.world.read_bytes(&path)
     }
 
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
-        let path = self.expanded(Path::new(path));
-        self.write_file(&path, bytes)
+        let path = self.world.expanded(Path::new(path));
+        self.world.write_file(&path, bytes)
     }
 
     fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
-        let path = self.expanded(Path::new(path));
-        self.append_file(&path, bytes)
+        let path = self.world.expanded(Path::new(path));
+        self.world.append_file(&path, bytes)
     }
 
     fn remove(&mut self, path: &str) -> Result<(), Fault> {
-        let path = self.expanded(Path::new(path));
-        self.remove_file(&path)
+        let path = self.world.expanded(Path::new(path));
+        self.world.remove_file(&path)
     }
 
     fn make_folder(&mut self, path: &str) -> Result<(), Fault> {
-        let path = self.expanded(Path::new(path));
-        self.create_directory(&path)
+        let path = self.world.expanded(Path::new(path));
+        self.world.create_directory(&path)
     }
 
     fn print(&mut self, text: &str) -> Result<(), Fault> {
@@ -235,7 +235,7 @@ impl Outside for Session {
     }
 
     fn environment_variable(&mut self, name: &str) -> Result<Option<String>, Fault> {
-        Session::environment_variable(self, name)
+        self.world.environment_variable(name)
     }
 
     fn unix_seconds(&mut self) -> Result<u64, Fault> {
@@ -251,7 +251,7 @@ impl Outside for Session {
     }
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
-        self.kind_of(Path::new(path))
+        self.world.kind_of(Path::new(path))
     }
 }
 

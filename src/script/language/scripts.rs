@@ -1,7 +1,7 @@
 //! Scripts that run scripts: finding them, reading each once, and the trace through them.
 
 use super::parsed_scripts::Parsed;
-use crate::access::faults::{cannot, escape_help, shown};
+use crate::access::faults::{escape_help, shown};
 use crate::access::policy::Access;
 use crate::bail;
 use crate::builtins::Failure;
@@ -11,7 +11,7 @@ use crate::eval;
 use crate::language::execution::Stop;
 use crate::models::imported::refuse_as_text;
 use crate::source::{SourceId, Span};
-use crate::syntax::{self, ScriptParts, ast};
+use crate::syntax::{ScriptParts, ast};
 use crate::world::normalized;
 use crate::{Dialect, RunStatus, Session};
 use std::collections::HashSet;
@@ -24,7 +24,7 @@ const MAX_DEPTH: usize = 64;
 impl Session {
     /// Runs a script from the command line as the outermost one.
     pub fn run_file(&mut self, path: &Path) -> RunStatus {
-        self.grant_script(path);
+        self.world.grant_script(path);
         self.execution.set_file(true);
         let name = path.to_string_lossy().into_owned();
         if let Err(diagnostics) = self.run_named(&name) {
@@ -65,7 +65,7 @@ impl Session {
             return Some(dialect);
         }
         for name in script.scripts_run() {
-            let plain = self.expanded(Path::new(&**name));
+            let plain = self.world.expanded(Path::new(&**name));
             let Some(path) = self.exact_script(folder, &plain) else { continue };
             if !seen.insert(path.clone()) {
                 continue;
@@ -139,8 +139,10 @@ impl Session {
             let shown = self.shown_dialect(script, &folder, &mut HashSet::new());
             self.recognized = shown.unwrap_or_default();
         }
-        self.execution.enter(folder);
+        self.execution.enter();
+        self.world.enter(folder);
         let result = self.parts(&script.parts, outermost);
+        self.world.leave();
         self.execution.leave();
         result
     }
@@ -234,10 +236,10 @@ impl Session {
     /// The script of this name: in the folder of the calling script, then in the working
     /// directory; with and without the ending; at last with other letter cases.
     pub(crate) fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
-        let folder = self.execution.folders().next().map(Path::to_path_buf).unwrap_or_default();
+        let folder = self.world.folders().next().map(Path::to_path_buf).unwrap_or_default();
         let key = (folder, self.world.current_dir(), name.to_owned());
         if let Some(path) = self.parsed.found(&key)
-            && self.sees(path)
+            && self.world.sees(path)
         {
             return Ok(path.clone());
         }
@@ -247,7 +249,7 @@ impl Session {
     }
 
     fn search_script(&mut self, folder: &Path, name: &str) -> Result<PathBuf, Fault> {
-        let plain = self.expanded(Path::new(name));
+        let plain = self.world.expanded(Path::new(name));
         if let Some(path) = self.exact_script(folder, &plain) {
             return Ok(path);
         }
@@ -262,7 +264,7 @@ impl Session {
         }
         // Whether there is a file that may not be read stays unknown.
         for place in &candidates {
-            self.may(Access::Read, place)?;
+            self.world.may(Access::Read, place)?;
         }
         let folders = [self.world.absolute(folder), self.world.current_dir()];
         let written = Path::new(name);
@@ -296,7 +298,7 @@ impl Session {
 
     /// The script of exactly this name, with or without the ending.
     fn exact_script(&self, folder: &Path, name: &Path) -> Option<PathBuf> {
-        let is_file = |path: &PathBuf| self.sees(path) && !self.world.is_dir(path);
+        let is_file = |path: &PathBuf| self.world.sees(path) && !self.world.is_dir(path);
         self.script_candidates(folder, name).into_iter().find(is_file)
     }
 
@@ -319,7 +321,7 @@ impl Session {
             let entries = self.world.list_dir(&found).ok()?;
             found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&name))?);
         }
-        (self.sees(&found) && !self.world.is_dir(&found)).then_some(found)
+        (self.world.sees(&found) && !self.world.is_dir(&found)).then_some(found)
     }
 
     fn parsed_script(&mut self, path: &Path) -> Result<Arc<Parsed>, Vec<Diagnostic>> {
@@ -333,20 +335,5 @@ impl Session {
         let script = Arc::new(Parsed::read(source, &text).map_err(|error| vec![error])?);
         self.parsed.keep(path, stamp, &script);
         Ok(script)
-    }
-
-    /// Reads a text file among the sources, under its path relative to the working directory.
-    pub(crate) fn add_file(&mut self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
-        self.check_current(path)?;
-        let bytes = self.bytes_of(path).map_err(|error| cannot("read", path, &error))?;
-        let (text, warning) = syntax::decode(&bytes);
-        let current = self.world.current_dir();
-        let shown = path.strip_prefix(&current).unwrap_or(path).display().to_string();
-        let text: Arc<str> = text.into();
-        let source = self.sources.add(shown, text.clone());
-        if let Some(warning) = warning {
-            self.report(warning.at(Span::new(source, 0, 0)).warning());
-        }
-        Ok((source, text))
     }
 }

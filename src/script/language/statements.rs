@@ -229,11 +229,11 @@ impl Session {
 
     /// Changes the working directory.
     pub(crate) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
-        let path = self.expanded(Path::new(path));
+        let path = self.world.expanded(Path::new(path));
         // The answer does not reveal which folders exist elsewhere; those that the run lies in are known.
         let absolute = self.world.absolute(&path);
         if !self.world.current_dir().starts_with(&absolute) {
-            self.may(Access::Read, &absolute)?;
+            self.world.may(Access::Read, &absolute)?;
         }
         let changed = self.world.set_current_dir(&path);
         changed.map_err(|error| {

@@ -102,7 +102,7 @@ impl Session {
     /// The package that a text belongs to by its place, loaded. Classes beside a text that belongs to
     /// none are found by name.
     fn package_of_document(&mut self, path: &Path) -> Result<Name, Vec<Diagnostic>> {
-        self.grant_input(path);
+        self.world.grant_input(path);
         let Some(folder) = path.parent() else { return Ok(Name::default()) };
         let is_package = path.file_name().is_some_and(|name| name == "package.mo");
         let root = folder.ancestors().take_while(|one| self.world.exists(&one.join("package.mo")));
@@ -116,7 +116,7 @@ impl Session {
 
     /// Finds classes by name beside a file, and in the folders `models` above it as a run of it does.
     pub fn search_beside(&mut self, path: &Path) {
-        self.grant_input(path);
+        self.world.grant_input(path);
         let Some(folder) = path.parent() else { return };
         let models = folder.ancestors().map(|above| above.join("models"));
         let folders: Vec<PathBuf> = std::iter::once(folder.to_path_buf())

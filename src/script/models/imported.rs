@@ -59,7 +59,7 @@ pub struct UnitFile {
 ///
 /// Files that cannot be read, archives and descriptions that are not those of a unit.
 pub fn read(session: &Session, path: &Path) -> Result<UnitFile, Fault> {
-    let bytes = session.read_bytes(path)?;
+    let bytes = session.world.read_bytes(path)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let wrong = |error: FmuError| {
         let fault = fault!(BAD_FMU, "`{name}` is not an FMU that can be used: {error}");

@@ -36,7 +36,7 @@ impl Session {
     /// The files of a library that is going to be loaded.
     pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
-            self.reader(),
+            self.world.reader_with_given(),
             self.classes.reads.clone(),
             self.sources.clone(),
             self.world.current_dir(),
@@ -111,7 +111,7 @@ impl Session {
     /// The folders `models` beside the scripts being run and the working directory, or above them.
     fn models_folders(&self) -> Vec<PathBuf> {
         let current = self.world.current_dir();
-        let frames = self.execution.folders().flat_map(Path::ancestors);
+        let frames = self.world.folders().flat_map(Path::ancestors);
         frames.chain(current.ancestors()).map(|folder| folder.join("models")).collect()
     }
 

@@ -29,7 +29,7 @@ impl Session {
 
     /// Whether classes of this file or package folder are loaded already.
     pub(crate) fn has_loaded(&self, path: &Path) -> bool {
-        let Some(mut found) = self.find_file(path) else { return false };
+        let Some(mut found) = self.world.find_file(path) else { return false };
         if found.file_name().is_some_and(|name| name == "package.mo") {
             found.pop();
         }
@@ -42,8 +42,8 @@ impl Session {
     /// # Errors
     /// What is wrong with the files; then nothing may be relied on of what they define.
     pub fn load_path(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
-        let Some(mut found) = self.find_file(path) else {
-            return Err(vec![self.missing_file(path).at(self.call_site())]);
+        let Some(mut found) = self.world.find_file(path) else {
+            return Err(vec![self.world.missing_file(path).at(self.call_site())]);
         };
         if found.file_name().is_some_and(|name| name == "package.mo") {
             found.pop();
@@ -70,7 +70,7 @@ impl Session {
             .filter(|path| is_package(path) || path.extension().is_some_and(|e| e == "mo"))
             .collect();
         // What a link in the folder leads to was not named: its being there does not allow to read it.
-        let leads_out = |path: &PathBuf| self.world.is_link(path) && !self.sees(path);
+        let leads_out = |path: &PathBuf| self.world.is_link(path) && !self.world.sees(path);
         let (links, files): (Vec<PathBuf>, Vec<PathBuf>) = inside.into_iter().partition(leads_out);
         for link in links {
             let message =
@@ -110,7 +110,7 @@ impl Session {
 
     /// The name of the package that a folder holds.
     pub(super) fn package_in(&self, folder: &Path) -> Option<Ident> {
-        let bytes = self.bytes_of(&folder.join("package.mo")).ok()?;
+        let bytes = self.world.bytes_of(&folder.join("package.mo")).ok()?;
         let (text, _) = syntax::decode(&bytes);
         let package = Outline::of(&text)?.classes.into_iter().next()?;
         Some(Ident::new(&text[package.name]))
@@ -336,7 +336,7 @@ impl Session {
             }
         }
         let path = Path::new(uri);
-        self.find_file(path).ok_or_else(|| self.missing_file(path))
+        self.world.find_file(path).ok_or_else(|| self.world.missing_file(path))
     }
 
     /// The file a class was loaded from, if it was loaded from one.

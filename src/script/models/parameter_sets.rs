@@ -28,7 +28,7 @@ pub fn read(session: &Session, path: &Path) -> Result<ParameterSet, Fault> {
         bail!(BAD_FMU, "`{shown}` is not a file `.{ENDING}`";
             help: "give the values of parameters in a parameter set of SSP, as `gapi identify` writes it");
     }
-    let text = session.read_text(path)?;
+    let text = session.world.read_text(path)?;
     ParameterSet::read(&text)
         .map_err(|why| fault!(BAD_FMU, "`{shown}` is not a parameter set of SSP: {why}"))
 }

@@ -53,7 +53,7 @@ impl Session {
 
     fn resources_below(&self, folder: Option<&Path>) -> Resources {
         let mut folders = vec![self.world.current_dir()];
-        folders.extend(self.execution.folders().map(Path::to_path_buf));
+        folders.extend(self.world.folders().map(Path::to_path_buf));
         folders.extend(folder.map(Path::to_path_buf));
         let mut seen = BTreeSet::new();
         folders.retain(|folder| seen.insert(folder.clone()));
@@ -67,8 +67,8 @@ impl Session {
             packages,
             compiler,
             reads: self.classes.reads.clone(),
-            process: self.process.clone(),
-            permissions: self.options.permissions,
+            process: self.world.process().clone(),
+            permissions: self.world.permitted(),
             variables: self.world.variables(),
         }))
     }

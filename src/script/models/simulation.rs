@@ -81,7 +81,7 @@ impl Unfinished {
             None => self.why,
             Some(until) => {
                 let table = form(session, until.table);
-                session.write_unfinished(path, &table, self.why)
+                session.world.write_unfinished(path, &table, self.why)
             }
         }
     }

@@ -51,8 +51,8 @@ pub(super) fn numbered(session: &Session, path: &Path) -> PathBuf {
 /// Gives a journal of an earlier run the next free number, and says where it is.
 pub(super) fn keep_old(session: &mut Session, path: &Path) -> Result<PathBuf, Fault> {
     let old = numbered(session, path);
-    let bytes = session.read_bytes(path)?;
-    session.write_safely(&old, &bytes)?;
+    let bytes = session.world.read_bytes(path)?;
+    session.world.write_safely(&old, &bytes)?;
     // What cannot be removed is written over.
     let _ = session.world.remove(path);
     Ok(old)

@@ -92,7 +92,7 @@ impl Session {
         file: &str,
         names: &[String; 2],
     ) -> Result<Measurement, Fault> {
-        let content = results::read_data(file, &self.read_bytes(Path::new(file))?)?;
+        let content = results::read_data(file, &self.world.read_bytes(Path::new(file))?)?;
         let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
         let notes = [&x, &y].into_iter().flat_map(crate::mat::Column::notes);
         let mut notes: Vec<String> = notes.collect();

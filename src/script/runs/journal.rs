@@ -192,7 +192,7 @@ impl Session {
         let mut checkpoint = Checkpoint::new(path.clone(), (None, seconds), now);
         let exists = self.world.exists(&path);
         if exists && resumes {
-            let old = self.read_bytes(&path)?;
+            let old = self.world.read_bytes(&path)?;
             let Some(journal) = decode(&old) else {
                 let refused = refused(&path, &old);
                 return Err(refused.help("start again without `--resume`").into());
@@ -200,7 +200,7 @@ impl Session {
             let is_answer = |entry: &&Entry<'_>| matches!(entry, Entry::Simulated { .. });
             let generations = journal.entries.iter().filter(is_answer).count();
             self.extension::<Journal>().replay = journal.entries.into();
-            self.write_safely(&path, &old[..journal.whole])?;
+            self.world.write_safely(&path, &old[..journal.whole])?;
             checkpoint = checkpoint.after(old[..journal.whole].to_vec());
             self.world.eprint(&format!(
                 "resumed: {generations} calls of Eval are replayed from `{}`\n",

@@ -26,7 +26,7 @@ impl Session {
     /// `file-error` when it cannot be written.
     pub fn trace_to(&mut self, path: &Path) -> Result<(), Fault> {
         let path = self.world.absolute(path);
-        self.write_safely(&path, &[])?;
+        self.world.write_safely(&path, &[])?;
         self.extension::<Tracing>().active = Some((path, Tracer::default()));
         self.at_end(write_rest);
         Ok(())
@@ -49,7 +49,7 @@ impl Session {
         let place = self.place_of_call(&mut tracer);
         record(&mut tracer, place);
         let written = match tracer.unwritten() {
-            size if size >= PIECE => self.append_file(&path, &tracer.take_bytes()),
+            size if size >= PIECE => self.world.append_file(&path, &tracer.take_bytes()),
             _ => Ok(()),
         };
         // A trace that cannot be written ends, and says so once.
@@ -86,5 +86,5 @@ fn write_rest(session: &mut Session) -> Result<(), Diagnostic> {
         return Ok(());
     };
     let bytes = tracer.take_bytes();
-    session.append_file(&path, &bytes).map_err(|fault| fault.at(Span::NONE))
+    session.world.append_file(&path, &bytes).map_err(|fault| fault.at(Span::NONE))
 }

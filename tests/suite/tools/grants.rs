@@ -51,13 +51,13 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("script/access/grants.rs", "Found", 1),
     ("script/access/grants.rs", "Named", 1),
     ("script/access/grants.rs", "Read", 2),
+    ("script/access/grants.rs", "ReadAll", 1),
     ("script/access/grants.rs", "Results", 1),
+    ("script/access/grants.rs", "WriteAll", 1),
     ("script/builtins/final_states.rs", "Replace", 1),
     ("script/runs/problem/shards.rs", "Found", 1),
-    ("script/session.rs", "ReadAll", 1),
     ("script/world/memory.rs", "Create", 1),
     ("script/world/memory.rs", "Own", 1),
-    ("script/session.rs", "WriteAll", 1),
 ];
 
 #[test]

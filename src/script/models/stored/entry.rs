@@ -64,7 +64,7 @@ impl Entry {
     /// The sources of the entry, if the disk answers as it did.
     pub(super) fn sources_if_unchanged(&self, session: &Session) -> Option<Vec<SourceId>> {
         let files = Watched::new(session.world.reader(), session.classes.reads.clone());
-        let variable = |name: &str| session.environment_variable(name).ok().flatten();
+        let variable = |name: &str| session.world.environment_variable(name).ok().flatten();
         let mut contents = HashMap::new();
         for (question, answer) in &self.answers {
             let (now, bytes) = ask(&files, &variable, question);

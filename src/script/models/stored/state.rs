@@ -8,7 +8,7 @@ use std::fmt::Write;
 pub(super) fn name(session: &Session, problem: &str) -> String {
     let mut text = format!("{problem}\n{:?}\n", session.classes.history.digest());
     let _ = writeln!(text, "{:?}", session.world.current_dir());
-    let _ = writeln!(text, "{:?}", session.execution.folders().collect::<Vec<_>>());
+    let _ = writeln!(text, "{:?}", session.world.folders().collect::<Vec<_>>());
     let _ = writeln!(text, "{:?}", session.classes.directories());
     let _ = writeln!(text, "{:?}", session.classes.named_packages());
     let _ = writeln!(text, "{:?}", session.classes.versions);

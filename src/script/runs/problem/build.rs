@@ -103,9 +103,9 @@ pub(super) fn build(
     path: &Path,
 ) -> Result<Built, Vec<Diagnostic>> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let around = session.execution.read_problem(Some(folder.to_owned()));
+    let around = session.world.read_problem(Some(folder.to_owned()));
     let built = build_in(session, file, folder);
-    session.execution.read_problem(around);
+    session.world.read_problem(around);
     built
 }
 
@@ -206,9 +206,9 @@ pub(super) fn filtered_experiments(
 ) -> Result<Filterable, Vec<Diagnostic>> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    let around = session.execution.read_problem(Some(folder.to_owned()));
+    let around = session.world.read_problem(Some(folder.to_owned()));
     let made = prepared(session, file, folder, (&mut notes, &mut origins));
-    session.execution.read_problem(around);
+    session.world.read_problem(around);
     let Prepared { read, free, .. } = made?;
     Ok((with_states(read.fitted, read.states, read.series), free, notes.into_notes()))
 }
@@ -240,6 +240,7 @@ fn prepared(
         check_class(session, file)?;
     } else {
         let bytes = session
+            .world
             .read_bytes(&folder.join(&file.model))
             .at(file.context.places.at(&["model"]))
             .map_err(alone)?;
@@ -341,7 +342,7 @@ fn data_of<'f>(
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
         let there = |fault: Fault| vec![fault.at(entry.places.at(&["data"]))];
-        let bytes = session.read_bytes(&data).map_err(there)?;
+        let bytes = session.world.read_bytes(&data).map_err(there)?;
         origins.add(format!("`{}`", entry.data.display()), &bytes);
         let table = results::read_data(&data.to_string_lossy(), &bytes).map_err(there)?;
         let cut = experiment::rows((entry, number), &table, notes);

@@ -60,7 +60,7 @@ struct Assigned<'c> {
 /// Data or a model that cannot be read, a file with several classes of which none is named.
 pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    let bytes = session.read_bytes(Path::new(&options.data)).map_err(one)?;
+    let bytes = session.world.read_bytes(Path::new(&options.data)).map_err(one)?;
     let table = results::read_data(&options.data, &bytes).map_err(one)?;
     let columns = columns(&table).map_err(one)?;
     let subject = Subject::read(session, options)?;

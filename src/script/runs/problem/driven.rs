@@ -115,7 +115,7 @@ impl InputColumns {
     ///
     /// Files that cannot be read or have no column of time.
     pub(super) fn read(session: &Session, path: &Path) -> Result<InputColumns, Fault> {
-        let bytes = session.read_bytes(path)?;
+        let bytes = session.world.read_bytes(path)?;
         let table = results::read_data(&path.to_string_lossy(), &bytes)?;
         let mut notes = Notes::default();
         let (time, origin) = times(&table, &mut notes)?;

@@ -80,7 +80,7 @@ pub fn estimate(
 ) -> Result<Estimated, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     refuse_as_text(path, "a problem file").map_err(one)?;
-    let bytes = session.read_bytes(path).map_err(one)?;
+    let bytes = session.world.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
     let source = session.sources.add(path.display().to_string(), text.as_str());
@@ -134,7 +134,7 @@ fn prepared(
 
 /// The values in a result of `gapi identify`.
 fn found(session: &Session, path: &Path) -> Result<Vec<(String, f64)>, Fault> {
-    let bytes = session.read_bytes(path)?;
+    let bytes = session.world.read_bytes(path)?;
     let result: Result<serde_json::Value, _> = serde_json::from_slice(&bytes);
     let parameters = result.ok().and_then(|own| own["parameters"].as_array().cloned());
     let parameters = parameters.ok_or_else(|| {

@@ -20,7 +20,7 @@ const FORMER: &str = "former";
 pub(super) fn keep(session: &mut Session, folder: &Path, origins: &Origins) -> Result<(), Fault> {
     let path = folder.join(INPUTS);
     let before = match session.world.exists(&path) {
-        true => serde_json::from_slice(&session.read_bytes(&path)?).ok(),
+        true => serde_json::from_slice(&session.world.read_bytes(&path)?).ok(),
         false => None,
     };
     if session.world.exists(&folder.join("result.json"))
@@ -32,7 +32,7 @@ pub(super) fn keep(session: &mut Session, folder: &Path, origins: &Origins) -> R
         }
     }
     let text = serde_json::to_string_pretty(origins).unwrap_or_default();
-    session.write_file(&path, (text + "\n").as_bytes())
+    session.world.write_file(&path, (text + "\n").as_bytes())
 }
 
 fn set_aside(session: &mut Session, folder: &Path, changed: &[String]) -> Result<(), Fault> {
@@ -41,8 +41,8 @@ fn set_aside(session: &mut Session, folder: &Path, changed: &[String]) -> Result
         let path = folder.join(&name);
         let is_result = [".json", ".csv", ".svg", ".html", ".mo", ".mos"];
         if is_result.iter().any(|ending| name.ends_with(ending)) && !session.world.is_dir(&path) {
-            let bytes = session.read_bytes(&path)?;
-            session.write_file(&kept.join(&name), &bytes)?;
+            let bytes = session.world.read_bytes(&path)?;
+            session.world.write_file(&kept.join(&name), &bytes)?;
         }
     }
     let here = session.world.current_dir();

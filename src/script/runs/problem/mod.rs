@@ -151,7 +151,7 @@ pub fn solve(
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     refuse_as_text(path, "a problem file").map_err(one)?;
-    let bytes = session.read_bytes(path).map_err(one)?;
+    let bytes = session.world.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
     let source = session.sources.add(path.display().to_string(), text.as_str());
@@ -389,9 +389,9 @@ fn keep_finished(
     let others =
         (2..=options.searches.unwrap_or(1)).map(|number| searches::journal(folder, number));
     let is_kept = std::iter::once(checkpoint.path().to_owned()).chain(others).all(|path| {
-        let journal = session.read_bytes(&path);
+        let journal = session.world.read_bytes(&path);
         journal.is_ok_and(|bytes| {
-            session.write_file(&finished(&path), &solving::without_times(&bytes)).is_ok()
+            session.world.write_file(&finished(&path), &solving::without_times(&bytes)).is_ok()
         })
     });
     if is_kept {
@@ -476,7 +476,7 @@ fn why_stopped(session: &Session, what: &str) -> String {
 /// written now is reported when all is written.
 fn write_quietly(session: &mut Session, folder: &Path, solution: &Solution, seconds: f64) {
     for (name, text) in files_of(session, solution, seconds) {
-        let _ = session.write_file(&folder.join(name), text.as_bytes());
+        let _ = session.world.write_file(&folder.join(name), text.as_bytes());
     }
 }
 
@@ -521,7 +521,7 @@ fn analysed(
         return Ok(None);
     };
     session.print(&found.text());
-    session.write_safely(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
+    session.world.write_safely(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
     Ok(Some(found))
 }
 
@@ -582,7 +582,7 @@ fn open(
     if exists && !options.resume {
         set_aside(session, path, left)?;
     }
-    session.write_safely(path, &bytes)?;
+    session.world.write_safely(path, &bytes)?;
     discard(session, &finished);
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
@@ -607,7 +607,7 @@ fn changed_since(
     path: &Path,
     origins: &Origins,
 ) -> Result<Option<String>, Fault> {
-    let bytes = session.read_bytes(path)?;
+    let bytes = session.world.read_bytes(path)?;
     let journal = solving::decode(&bytes);
     let before = journal.as_ref().and_then(|journal| journal.origins());
     let changed = before.map_or_else(Vec::new, |before| origins.changed_since(before));
@@ -617,7 +617,7 @@ fn changed_since(
 /// The journal that an earlier run has left, for a run that resumes; without one it says that it begins.
 fn left_journal(session: &mut Session, paths: [&Path; 2]) -> Result<Option<Vec<u8>>, Fault> {
     match paths.into_iter().find(|path| session.world.exists(path)) {
-        Some(journal) => session.read_bytes(journal).map(Some),
+        Some(journal) => session.world.read_bytes(journal).map(Some),
         None => {
             let folder = paths[0].parent().unwrap_or(paths[0]).display();
             session.print(&format!(
@@ -696,7 +696,7 @@ pub(super) fn write(
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
     for (name, text) in files {
-        if let Err(fault) = session.write_safely(&folder.join(&name), text.as_bytes()) {
+        if let Err(fault) = session.world.write_safely(&folder.join(&name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);
         }

@@ -29,7 +29,7 @@ const BOUNDS: [f64; 2] = [1e-6, 1e3];
 pub fn petab(session: &mut Session, path: &Path) -> Result<Vec<(String, String)>, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     refuse_as_text(path, "a problem file").map_err(one)?;
-    let bytes = session.read_bytes(path).map_err(one)?;
+    let bytes = session.world.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
     let source = session.sources.add(path.display().to_string(), text.as_str());
@@ -42,6 +42,7 @@ pub fn petab(session: &mut Session, path: &Path) -> Result<Vec<(String, String)>
         _ => return Err(vec![several_files().at(file.context.places.at(&["files"]))]),
     };
     let model = session
+        .world
         .read_bytes(&model)
         .map_err(|_| vec![several_files().at(file.context.places.at(&["files"]))])?;
     let series: Vec<&Series> = built.problem.series.iter().filter(|own| own.is_data()).collect();

@@ -106,7 +106,7 @@ pub(super) fn with_unread_columns(
     let data = experiments.into_iter().flatten().filter(without);
     let mut reasons = data.filter_map(|own| {
         let data = path.parent()?.join(own.get("data")?.as_str()?);
-        let bytes = session.read_bytes(&data).ok()?;
+        let bytes = session.world.read_bytes(&data).ok()?;
         results::read_data(&data.to_string_lossy(), &bytes).ok()?.unread_columns()
     });
     match reasons.next() {

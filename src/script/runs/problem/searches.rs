@@ -120,7 +120,7 @@ pub(super) fn search_on(
             return Ok(searched);
         };
         searched.seconds += run.seconds;
-        let journal = session.read_bytes(&path)?;
+        let journal = session.world.read_bytes(&path)?;
         finished.push((part, Finished { search: SolvedSearch::of(&run), journal }));
     }
     let parts = &searched.run.evaluation.parts;

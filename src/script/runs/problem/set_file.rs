@@ -39,7 +39,7 @@ pub(super) fn read(
         let Some(own) = entry.set.file.clone() else { continue };
         let path = folder.join(&own);
         let set = parameter_sets::read(session, &path).map_err(one)?;
-        let bytes = session.read_bytes(&path).map_err(one)?;
+        let bytes = session.world.read_bytes(&path).map_err(one)?;
         origins.add(format!("`{}`", own.display()), &bytes);
         for parameter in set.parameters {
             let unit = declarations.unit(session, &file.model, &parameter)?;

@@ -63,8 +63,8 @@ pub(super) fn keep(
     let mut file = ShardFile::new(&run.evaluation.parts, shard, origins, &problem);
     file.requested = requested(options);
     // How long it took differs between equal runs.
-    file.journal = without_times(&session.read_bytes(journal)?);
-    session.write_safely(&folder.join(FILE), &file.to_bytes())
+    file.journal = without_times(&session.world.read_bytes(journal)?);
+    session.world.write_safely(&folder.join(FILE), &file.to_bytes())
 }
 
 /// What is asked for beyond the fit.
@@ -96,7 +96,7 @@ pub fn read_shards(
         if !session.world.exists(&path) {
             bail!(BAD_OPTION, "`{}` contains no shard", folder.display(); help: "give the folders that `gapi identify --shard` has written with `--out`, and wait until all shards have ended");
         }
-        let bytes = session.read_bytes(&path)?;
+        let bytes = session.world.read_bytes(&path)?;
         let file = ShardFile::from_bytes(&bytes).ok_or_else(
             || fault!(BAD_OPTION, "`{}` is damaged", path.display(); help: "compute this shard again"),
         )?;
