@@ -1,6 +1,9 @@
 //! One cause, one error: what cannot be done because an earlier statement failed is noted once.
 
+use crate::diag::{Diagnostic, Fault};
+use crate::errors::FOLLOW_UP;
 use crate::name::Ident;
+use crate::source::Span;
 use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
     Expression, ExpressionKind, InteractiveKind, InteractiveStatement, Statement,
@@ -18,9 +21,16 @@ pub(crate) struct FollowUps {
 }
 
 impl FollowUps {
-    /// Whether `name` would exist had an earlier statement not failed.
-    pub(crate) fn is_missing(&self, name: Ident) -> bool {
-        self.anything || self.missing.contains(&name)
+    /// Why `name` has no value, if it would have one had an earlier statement not failed.
+    pub(crate) fn note(&self, name: Ident, span: Span) -> Option<Diagnostic> {
+        if !self.anything && !self.missing.contains(&name) {
+            return None;
+        }
+        let message = format!(
+            "`{name}` has no value because an earlier statement failed; this statement and other \
+             dependent statements are skipped"
+        );
+        Some(Fault::new(FOLLOW_UP, message).at(span).note())
     }
 
     /// A statement gave the variable a value after all.

@@ -2,14 +2,12 @@
 
 use super::workspace::check_type;
 use crate::builtins;
-use crate::builtins::{BuiltinId, Failure};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::errors::{INTERRUPTED, OWN_FUNCTION};
-use crate::eval::{Callee, Function, FunctionBody, Host, Scope, ScriptHost};
+use crate::errors::INTERRUPTED;
+use crate::eval::{Callee, Function, Host, Scope, ScriptHost};
 use crate::external::c::Request;
 use crate::external::{Entry, Outside, Random};
 use crate::name::{Ident, Name};
-use crate::packages::FOLDER;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Expression};
 use crate::value::Value;
@@ -18,15 +16,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Host for Session {
-    /// A function of a script or a loaded library first, then a command.
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
-        let revision = self.classes.revision();
-        if let Some(known) = self.workspace.callees.get(name, revision, self.dialect()) {
-            return Ok(known);
-        }
-        let callee = self.look_up_callee(name)?;
-        self.workspace.callees.put(name, callee.as_ref());
-        Ok(callee)
+        self.callee_named(name)
     }
 
     fn simple_callee(&mut self, name: Ident) -> Result<Option<Callee>, Diagnostic> {
@@ -34,7 +25,7 @@ impl Host for Session {
         if let Some(known) = self.workspace.callees.get_simple(name, revision, self.dialect()) {
             return Ok(known);
         }
-        let callee = self.callee(&Name::from(name))?;
+        let callee = self.callee_named(&Name::from(name))?;
         self.workspace.callees.put_simple(name, callee.as_ref());
         Ok(callee)
     }
@@ -47,7 +38,7 @@ impl Host for Session {
             return Ok(Some(value));
         }
         let first = reference.parts[0].name;
-        match self.follow_up(first, reference.span) {
+        match self.follow_ups.note(first, reference.span) {
             Some(note) => Err(note),
             None => self.model_value(reference),
         }
@@ -132,7 +123,7 @@ impl ScriptHost for Session {
         value: Value,
         span: Span,
     ) -> Result<bool, Diagnostic> {
-        if let Some(note) = self.follow_up(target.parts[0].name, target.span)
+        if let Some(note) = self.follow_ups.note(target.parts[0].name, target.span)
             && target.parts.len() == 1
         {
             return Err(note);
@@ -253,143 +244,4 @@ impl Outside for Session {
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
         self.world.kind_of(Path::new(path))
     }
-}
-
-impl Session {
-    fn run_command(
-        &mut self,
-        header: &Arc<Function>,
-        arguments: Vec<Value>,
-        span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        let Some(id) = BuiltinId::of(header) else {
-            unreachable!("`callee` gives out headers of the table only")
-        };
-        let around = self.execution.begin_call(span);
-        let before = self.output.messages.next_number();
-        let result = id.run(self, arguments);
-        self.execution.end_call(around);
-        if let Ok(answer) = &result {
-            self.statuses.answered(answer, before..self.output.messages.next_number());
-        }
-        if result.as_ref().is_ok_and(is_success) {
-            self.output.messages.note_success();
-        }
-        match result {
-            Ok(Value::Tuple(values)) => Ok(values),
-            Ok(value) => Ok(vec![value]),
-            Err(failure) => Err(self.last_of(failure, span)),
-        }
-    }
-
-    /// The last diagnostic of a command that failed; the others are reported.
-    pub(super) fn last_of(&mut self, failure: Failure, span: Span) -> Diagnostic {
-        match failure {
-            Failure::Here(fault) => fault.at(span),
-            Failure::Elsewhere(mut diagnostics) => {
-                let last = diagnostics.pop();
-                // What has no place of its own was found by this call.
-                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic.or_at(span)));
-                let last = last.map(|diagnostic| diagnostic.or_at(span));
-                last.unwrap_or_else(|| Fault::new(crate::errors::SCRIPT_ERROR, "failed").at(span))
-            }
-        }
-    }
-
-    fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
-        let loaded = self.loaded_function(name)?;
-        let replacing = self.replacing(name, loaded.as_deref())?;
-        if let Some(function) = replacing.or(loaded) {
-            let callee = self.loaded_callee(function);
-            self.note_replaced(name, &callee);
-            return Ok(Some(callee));
-        }
-        for candidate in self.workspace.candidates(name) {
-            if let Some(id) = builtins::find(&candidate, self.dialect()) {
-                return Ok(Some(Callee::Builtin(id.function())));
-            }
-        }
-        for candidate in self.workspace.candidates(name) {
-            let is_intrinsic = candidate.is_simple()
-                && crate::functions::names().any(|intrinsic| candidate.parts[0] == intrinsic);
-            if !is_intrinsic && self.class_exists(&Name::new(candidate.first())) {
-                let function = self.loaded_function(name)?;
-                return Ok(function.map(|function| self.loaded_callee(function)));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The loaded function that replaces a command called by its bare name: one of the command's full
-    /// name, as long as no function of the bare name was loaded later.
-    fn replacing(
-        &mut self,
-        name: &Name,
-        bare: Option<&Function>,
-    ) -> Result<Option<Arc<Function>>, Diagnostic> {
-        let Some(command) = builtins::find(name, self.dialect()).filter(|_| name.is_simple())
-        else {
-            return Ok(None);
-        };
-        for package in command.packages() {
-            let full = Name::parse(package).child(name.parts[0]);
-            let root = Name::new(full.first());
-            let is_shipped = self.is_shipped(&root);
-            let library = self.library();
-            let is_older = bare.is_some_and(|bare| {
-                let other = Name::new(bare.name.first());
-                library.find(&other).is_some_and(|other| Some(other) > library.find(&root))
-            });
-            if !is_shipped && !is_older && library.contains(&full) {
-                return self.function_named(&full);
-            }
-        }
-        Ok(None)
-    }
-
-    /// Whether a class is one of the program's own.
-    fn is_shipped(&self, name: &Name) -> bool {
-        self.source_file(name).is_some_and(|file| file.starts_with(FOLDER))
-    }
-
-    /// Says once that a function of a package is called in place of a command. That one of the
-    /// script itself is called by its own name needs no word.
-    fn note_replaced(&mut self, name: &Name, callee: &Callee) {
-        let (Callee::Function(function), Some(command)) = (callee, name.last()) else { return };
-        let is_own = function.name.is_simple() || self.is_shipped(&function.name);
-        let replaces = builtins::find(name, self.dialect()).is_some();
-        if replaces && self.workspace.replaces_newly(command, &function.name) && !is_own {
-            let called = &function.name;
-            let message = format!(
-                "`{command}` is the function `{called}` that was loaded, not the built-in command"
-            );
-            self.report(Fault::new(OWN_FUNCTION, message).at(function.span).note());
-        }
-    }
-
-    /// A loaded function, or the command that it declares with `external "builtin"`, or that is its
-    /// implementation: the functions of `Modelica.Utilities` are commands, loaded or not.
-    fn loaded_callee(&self, function: Arc<Function>) -> Callee {
-        let is_utility = function.name.to_string().starts_with("Modelica.Utilities.");
-        let own = builtins::find(&function.name, self.dialect()).filter(|_| is_utility);
-        let command = own.or_else(|| match &function.body {
-            FunctionBody::External(external) if external.language.as_deref() == Some("builtin") => {
-                external
-                    .function
-                    .as_ref()
-                    .and_then(|called| builtins::find(&Name::new([called.node]), self.dialect()))
-            }
-            _ => None,
-        });
-        command.map_or(Callee::Function(function), |id| Callee::Builtin(id.function()))
-    }
-}
-
-/// Whether a command says that it succeeded.
-fn is_success(answer: &Value) -> bool {
-    let first = match answer {
-        Value::Tuple(values) => values.first(),
-        value => Some(value),
-    };
-    first == Some(&Value::Boolean(true))
 }

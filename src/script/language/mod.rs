@@ -2,19 +2,23 @@
 //! and what is shown of them.
 
 pub mod callees;
+mod commands;
 mod constants;
 mod declarations;
 pub mod echo;
 pub mod execution;
 pub mod expectation;
+mod expressions;
 pub(crate) mod follow_up;
 mod host;
 pub mod log;
+mod lookup;
 pub mod messages;
 pub mod output;
 pub(crate) mod parsed_scripts;
 pub mod parsing;
 pub mod script_checks;
+mod script_files;
 mod scripts;
 mod statements;
 pub(crate) mod statuses;

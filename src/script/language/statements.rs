@@ -2,9 +2,8 @@
 
 use crate::access::policy::Access;
 use crate::diag::{At, Diagnostic, Fault, suggest};
-use crate::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
+use crate::errors::BAD_IMPORT;
 use crate::eval::errors::WRONG_OUTPUTS;
-use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
@@ -13,7 +12,6 @@ use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, Import, ImportKind, InteractiveKind,
     InteractiveStatement, Statement, StatementKind,
 };
-use crate::value::Value;
 use crate::{Session, builtins};
 use std::path::Path;
 use std::sync::Arc;
@@ -104,24 +102,6 @@ impl Session {
             help: "outputs are assigned in their order; write `({all}) := ...`, and leave out what is \
                    not needed: `(, b) := ...`");
         self.report(fault.at(place).warning());
-    }
-
-    /// The value of an expression among the script's variables.
-    pub fn evaluate(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
-        self.with_scope(|scope, session| eval::evaluate(expression, scope, session))
-    }
-
-    fn execute(&mut self, statement: &Statement) -> Result<(), Diagnostic> {
-        let statements = std::slice::from_ref(statement);
-        self.with_scope(|scope, session| eval::execute(statements, scope, session))?;
-        Ok(())
-    }
-
-    pub(super) fn with_scope<T>(&mut self, work: impl FnOnce(&mut Scope, &mut Session) -> T) -> T {
-        let mut scope = std::mem::take(&mut self.workspace.variables);
-        let result = work(&mut scope, self);
-        self.workspace.variables = scope;
-        result
     }
 
     fn import(&mut self, import: &Import) -> Result<(), Diagnostic> {
@@ -241,25 +221,5 @@ impl Session {
             crate::access::faults::cannot("change to", &path, &error)
                 .help(format!("the working directory is still `{}`", here.display()))
         })
-    }
-
-    /// What a name without a variable stands for in the model translated last, or why nothing.
-    pub(crate) fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
-        if !self.follow_ups.is_missing(name) {
-            return None;
-        }
-        let message = format!(
-            "`{name}` has no value because an earlier statement failed; this statement and other \
-             dependent statements are skipped"
-        );
-        Some(Fault::new(FOLLOW_UP, message).at(span).note())
-    }
-
-    /// The fault of a dotted name while no model is translated.
-    pub(crate) fn nothing_translated(&self, reference: &ComponentReference) -> Fault {
-        let shown = reference.name();
-        fault!(NO_TRANSLATED_MODEL, "`{shown}` refers to a component of a model, but no model \
-                                     has been translated";
-            help: "call `translateModel(\"Package.Model\")` first")
     }
 }

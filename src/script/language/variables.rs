@@ -3,7 +3,7 @@
 use crate::Session;
 use crate::bail;
 use crate::builtins::component_names;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::Fault;
 use crate::errors::NO_WINDOW;
 use crate::name::{Ident, Name};
 use crate::registry::BAD_OPTION;
@@ -83,16 +83,6 @@ impl Session {
         let model = self.last_model();
         let declared = model.iter().flat_map(|model| model.declarations.keys());
         declared.map(|name| name.to_string()).collect()
-    }
-
-    /// The value of an expression; `name` is shown in diagnostics.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn value_of(&mut self, name: &str, text: &str) -> Result<Value, Diagnostic> {
-        let source = self.sources.add(name, text);
-        let expression = syntax::parse_expression(source, text)?;
-        self.evaluate(&expression)
     }
 
     /// The text of a loaded class, or of one that can be.

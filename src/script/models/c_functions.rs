@@ -1,20 +1,14 @@
 //! Functions in C that libraries bring along (MLS §12.9): which are compiled together, where their
 //! files are, and whether the user allows them.
 
-use crate::Session;
 use crate::diag::Fault;
-use crate::eval::c_function::{brings_code, destructor};
-use crate::eval::{Callee, Function, Host, ValueType};
 use crate::external::Entry;
 use crate::external::c::{CCompiler, Declaration, Request, Unit, entry, source};
 use crate::external::errors::EXTERNAL_REFUSED;
 use crate::fault;
-use crate::name::{Ident, Name};
-use crate::syntax::ast::{ClassSpecifier, Section};
 use crate::world::FileReader;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Folders of a library for the system that this program runs on (MLS §13.5.4), the most special
 /// first.
@@ -125,42 +119,4 @@ fn refused(declaration: &Declaration, files: &dyn FileReader, find: Find<'_>) ->
                whatever you can do on this machine",
         declaration.class.split('.').next().unwrap_or_default()
     )
-}
-
-impl Session {
-    /// The functions in C of the package that a function is in, and of the external objects that it
-    /// takes: in a script they share the variables of their sources.
-    pub(crate) fn c_functions_near(&mut self, function: &Function) -> Vec<Arc<Function>> {
-        let mut packages = BTreeSet::from([function.name.parent()]);
-        for component in function.inputs.iter().chain(&function.outputs) {
-            if let ValueType::ExternalObject(class) = &component.value_type {
-                packages.insert(class.parent());
-            }
-        }
-        let mut names = vec![destructor(function)];
-        for package in packages {
-            for child in self.library().children(&package) {
-                let child = package.child(child);
-                // The two parts of a class of external objects.
-                let part = |name| child.child(Ident::new(name));
-                names.extend(["constructor", "destructor"].map(part));
-                names.push(child);
-            }
-        }
-        names.retain(|name| self.is_in_c(name));
-        let loaded = names.iter().filter_map(|name| match self.callee(name) {
-            Ok(Some(Callee::Function(function))) => Some(function),
-            _ => None,
-        });
-        loaded.collect()
-    }
-
-    fn is_in_c(&mut self, name: &Name) -> bool {
-        let Some(definition) = self.library().definition(name) else { return false };
-        let ClassSpecifier::Long(class) = &definition.specifier else { return false };
-        class.sections.iter().any(|section| match section {
-            Section::External(clause) => brings_code(clause),
-            _ => false,
-        })
-    }
 }

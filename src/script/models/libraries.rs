@@ -12,6 +12,7 @@ use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind, Modification,
     Section,
 };
+use crate::syntax::{self, Outline};
 use crate::world::normalized;
 use crate::{fault, flatten::Library};
 use std::path::{Path, PathBuf};
@@ -31,6 +32,14 @@ impl Session {
         if let Some(name) = self.package_in(&path) {
             self.classes.add_named(name, path);
         }
+    }
+
+    /// The name of the package that a folder holds.
+    pub(super) fn package_in(&self, folder: &Path) -> Option<Ident> {
+        let bytes = self.world.bytes_of(&folder.join("package.mo")).ok()?;
+        let (text, _) = syntax::decode(&bytes);
+        let package = Outline::of(&text)?.classes.into_iter().next()?;
+        Some(Ident::new(&text[package.name]))
     }
 
     /// The files of a library that is going to be loaded.
@@ -70,7 +79,7 @@ impl Session {
         if let Some(named) = self.classes.named_packages().get(&name) {
             return Some(named.clone());
         }
-        let folders = self.folders();
+        let folders = self.class_folders();
         let exact = self.classes.versions.get(&name).and_then(|version| {
             let required = format!("{name} {version}");
             folders.iter().find_map(|folder| self.version_in(folder, &required))
@@ -84,7 +93,7 @@ impl Session {
     /// Asks for the first of these versions that is there, when the library is loaded.
     pub(crate) fn require_version(&mut self, name: &Name, versions: Vec<String>) {
         let Some(library) = name.first() else { return };
-        let folders = self.folders();
+        let folders = self.class_folders();
         let required = versions.into_iter().take_while(|version| version != "default");
         let found = required.into_iter().find(|version| {
             let named = format!("{library} {version}");
@@ -100,7 +109,7 @@ impl Session {
         self.classes.directories()
     }
 
-    fn folders(&self) -> Vec<PathBuf> {
+    fn class_folders(&self) -> Vec<PathBuf> {
         let may_read = |folder: &PathBuf| self.world.permits(folder, Access::Read).is_ok();
         let own = self.classes.directories().iter().cloned().chain([self.world.current_dir()]);
         let models = self.models_folders().into_iter().filter(may_read);
@@ -176,21 +185,6 @@ impl Session {
         for name in names.iter().filter(|name| name.is_simple()) {
             if let Some(fault) = self.other_version(name) {
                 self.report(fault.at(self.call_site()).warning());
-            }
-        }
-    }
-
-    /// Loads the libraries that the `uses` annotations of loaded ones name, as far as they are found:
-    /// for those who hand the classes on to where nothing is loaded any more.
-    pub fn load_used(&mut self) -> Result<(), Vec<Diagnostic>> {
-        loop {
-            let used: Vec<Ident> = self.classes.versions.keys().copied().collect();
-            let mut is_loaded = false;
-            for name in used {
-                is_loaded |= self.autoload(&Name::from(name))?;
-            }
-            if !is_loaded {
-                return Ok(());
             }
         }
     }

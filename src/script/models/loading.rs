@@ -11,8 +11,8 @@ use crate::eval::Function;
 use crate::flatten::{Library, RecordedInput};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
+use crate::syntax;
 use crate::syntax::ast::ClassDefinition;
-use crate::syntax::{self, Outline};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -106,14 +106,6 @@ impl Session {
         }
         let names = folders.iter().rev().map_while(|folder| self.package_in(folder));
         Ok(Name::new(names.collect::<Vec<_>>()))
-    }
-
-    /// The name of the package that a folder holds.
-    pub(super) fn package_in(&self, folder: &Path) -> Option<Ident> {
-        let bytes = self.world.bytes_of(&folder.join("package.mo")).ok()?;
-        let (text, _) = syntax::decode(&bytes);
-        let package = Outline::of(&text)?.classes.into_iter().next()?;
-        Some(Ident::new(&text[package.name]))
     }
 
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
@@ -223,6 +215,21 @@ impl Session {
             loaded |= self.autoload_class(name)?;
         }
         Ok(loaded)
+    }
+
+    /// Loads the libraries that the `uses` annotations of loaded ones name, as far as they are found:
+    /// for those who hand the classes on to where nothing is loaded any more.
+    pub fn load_used(&mut self) -> Result<(), Vec<Diagnostic>> {
+        loop {
+            let used: Vec<Ident> = self.classes.versions.keys().copied().collect();
+            let mut is_loaded = false;
+            for name in used {
+                is_loaded |= self.autoload(&Name::from(name))?;
+            }
+            if !is_loaded {
+                return Ok(());
+            }
+        }
     }
 
     /// Whether a class of this name is loaded or can be.

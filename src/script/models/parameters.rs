@@ -37,7 +37,7 @@ impl Session {
             return Ok(true);
         }
         if self.models.last().is_none() {
-            return Err(self.nothing_translated(target).at(target.span));
+            return Err(no_model(&target.name().to_string()).at(target.span));
         }
         self.set_values(target, value).at(span)?;
         self.models.note_set(target);
