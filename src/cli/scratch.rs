@@ -192,8 +192,8 @@ impl Environment for ScratchWorld {
         0
     }
 
-    fn interrupted(&self) -> bool {
-        self.disk.interrupted()
+    fn is_interrupted(&self) -> bool {
+        self.disk.is_interrupted()
     }
 
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {

@@ -299,7 +299,7 @@ impl Environment for SystemWorld {
         std::env::var(name).ok()
     }
 
-    fn variables(&self) -> Option<fn(&str) -> Option<String>> {
+    fn env_reader(&self) -> Option<fn(&str) -> Option<String>> {
         Some(|name| std::env::var(name).ok())
     }
 
@@ -320,7 +320,7 @@ impl Environment for SystemWorld {
         std::process::id()
     }
 
-    fn interrupted(&self) -> bool {
+    fn is_interrupted(&self) -> bool {
         let is_asked = self.stopping.flag.load(Ordering::Relaxed);
         if is_asked {
             self.stopping.noticed.store(true, Ordering::Relaxed);

@@ -97,7 +97,7 @@ impl Session {
 
     /// Whether the user asked to stop; sticky.
     pub fn is_interrupted(&self) -> bool {
-        self.execution.stop() == Some(Stop::Interrupt) || self.world.interrupted()
+        self.execution.stop() == Some(Stop::Interrupt) || self.world.is_interrupted()
     }
 
     /// The value of a script's variable.

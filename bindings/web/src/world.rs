@@ -153,7 +153,7 @@ impl Environment for LiveWorld {
         host::unix() as u64
     }
 
-    fn interrupted(&self) -> bool {
+    fn is_interrupted(&self) -> bool {
         self.asked.set(self.asked.get().wrapping_add(1));
         if self.asked.get().is_multiple_of(CLOCK_EVERY) {
             self.look();

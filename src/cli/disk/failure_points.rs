@@ -145,7 +145,7 @@ impl Files for DiskWorld {
 }
 
 impl Environment for DiskWorld {
-    fn interrupted(&self) -> bool {
+    fn is_interrupted(&self) -> bool {
         // The process is no more: it ends as soon as it asks.
         has_crashed()
     }

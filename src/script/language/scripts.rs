@@ -131,7 +131,7 @@ impl Session {
             if self.execution.stop().is_some() {
                 return Ok(());
             }
-            if self.world.interrupted() {
+            if self.world.is_interrupted() {
                 self.interrupt(statement.span);
                 return Ok(());
             }
@@ -150,7 +150,7 @@ impl Session {
             self.echo_nothing();
         }
         // A command that was interrupted may have answered with what it had.
-        if let (Some(last), true) = (statements.last(), outermost && self.world.interrupted()) {
+        if let (Some(last), true) = (statements.last(), outermost && self.world.is_interrupted()) {
             self.interrupt(last.span);
         }
         Ok(())

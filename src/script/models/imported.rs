@@ -385,7 +385,7 @@ pub fn simulate(
 /// Why a simulation ended early.
 fn why(session: &Session, unit: &Imported, failure: SimulationFailure) -> Fault {
     let SimulationFailure { time, class, message, .. } = failure;
-    if session.world.interrupted() {
+    if session.world.is_interrupted() {
         return fault!(INTERRUPTED, "interrupted");
     }
     let at = match class {

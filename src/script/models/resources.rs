@@ -69,7 +69,7 @@ impl Session {
             reads: self.classes.reads.clone(),
             process: self.world.process().clone(),
             permissions: self.world.permitted(),
-            variables: self.world.variables(),
+            variables: self.world.env_reader(),
         }))
     }
 }

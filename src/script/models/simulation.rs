@@ -455,7 +455,7 @@ pub fn simulate(
             session.models.end = Some(end);
             None
         }
-        Err(_) if session.world.interrupted() => {
+        Err(_) if session.world.is_interrupted() => {
             Some(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
         Err(error) => Some(system.explain(&error)),

@@ -23,7 +23,7 @@ pub trait Environment {
     /// An environment variable that scripts may see.
     fn env(&self, name: &str) -> Option<String>;
     /// The environment variables for models, which cannot ask the world, if there are some.
-    fn variables(&self) -> Option<fn(&str) -> Option<String>> {
+    fn env_reader(&self) -> Option<fn(&str) -> Option<String>> {
         None
     }
     /// Seconds since an arbitrary moment, never decreasing.
@@ -39,7 +39,7 @@ pub trait Environment {
         0
     }
     /// Whether the user asked to stop.
-    fn interrupted(&self) -> bool;
+    fn is_interrupted(&self) -> bool;
     /// What becomes true when the user asks to stop, for work that cannot ask the world.
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
         None

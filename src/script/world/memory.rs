@@ -328,7 +328,7 @@ impl Environment for MemoryWorld {
         0
     }
 
-    fn interrupted(&self) -> bool {
+    fn is_interrupted(&self) -> bool {
         let left = self.patience.get();
         self.patience.set(left.saturating_sub(1));
         left == 0 || self.stop.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))

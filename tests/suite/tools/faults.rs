@@ -172,7 +172,7 @@ impl Files for FaultyWorld {
 }
 
 impl Environment for FaultyWorld {
-    fn interrupted(&self) -> bool {
+    fn is_interrupted(&self) -> bool {
         // The process is no more: it ends as soon as it asks.
         self.calls.borrow().frozen.is_some()
     }

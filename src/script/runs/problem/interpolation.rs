@@ -42,7 +42,7 @@ pub(super) fn try_others(
     undecided: &[Undecided],
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if solution.outcome.ending.kind != EndingKind::Minimum || session.world.interrupted() {
+    if solution.outcome.ending.kind != EndingKind::Minimum || session.world.is_interrupted() {
         return Ok(());
     }
     for assumed in [Between::Constant, Between::Linear] {
@@ -56,7 +56,7 @@ pub(super) fn try_others(
         let processors = session.world.processors();
         let (found, simulations) = run.best_with(other.problem.simulator, None, &processors)?;
         solution.effort.simulations_for_statistics += simulations;
-        if session.world.interrupted() {
+        if session.world.is_interrupted() {
             let sentence = "Other interpolations of the inputs were not tried: the run was stopped \
                             before.";
             solution.findings.push(Finding::new(FindingKind::Missing, sentence));

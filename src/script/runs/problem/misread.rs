@@ -190,7 +190,7 @@ fn try_readings(
     changes: &[Changed],
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if !about.1.is_doubtful() || session.world.interrupted() {
+    if !about.1.is_doubtful() || session.world.is_interrupted() {
         return Ok(());
     }
     let [fewest, most] = EVALUATIONS;
@@ -245,7 +245,7 @@ impl ShortFits<'_, '_> {
             short_fit(other.problem, (evaluations, &estimate), &processors, flag)?;
         self.simulations += simulations;
         solution.effort.simulations_for_statistics += simulations;
-        if self.session.world.interrupted() {
+        if self.session.world.is_interrupted() {
             let sentence =
                 "Not all other readings of the columns were tried: the run was stopped before.";
             solution.findings.push(Finding::new(FindingKind::Missing, sentence));
@@ -323,7 +323,7 @@ impl ShortFits<'_, '_> {
         let change = |file: &mut ProblemFile| {
             base.iter().for_each(|own| changes[*own].apply(file, most_steps));
         };
-        let is_needless = about.0.is_empty() || self.session.world.interrupted();
+        let is_needless = about.0.is_empty() || self.session.world.is_interrupted();
         let other = match is_needless {
             true => None,
             false => (self.again)(self.session, Change::Entries(&change)).ok(),

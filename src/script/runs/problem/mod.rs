@@ -342,7 +342,7 @@ fn solve_built(
         doubts.settle(session, (&mut run, &mut solution), again)?;
         solving::draw_curves(&experiments, &mut solution, &validation, hurry(session));
     }
-    let is_interrupted = ending.is_interrupted || session.world.interrupted();
+    let is_interrupted = ending.is_interrupted || session.world.is_interrupted();
     solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
     print(session, &mut solution, notes);
     write(session, &folder, &solution, seconds)?;
@@ -431,7 +431,7 @@ fn with_statistics(
     run.evaluation.show("");
     run.evaluation.show_by(None);
     match made {
-        Err(_) if session.world.interrupted() => {
+        Err(_) if session.world.is_interrupted() => {
             let why = why_stopped(session, "the statistics");
             Ok(found.without_statistics(&why).without_inference(run))
         }
@@ -455,7 +455,7 @@ fn statistics(
     }
     solution.add_searches(all, searched);
     solution.add_inference(run)?;
-    if session.world.interrupted() {
+    if session.world.is_interrupted() {
         let why = why_stopped(session, "the statistics");
         let sentence = format!("The report is not complete: {why}.");
         let finding = solving::Finding::new(solving::FindingKind::Missing, sentence);
@@ -510,7 +510,7 @@ fn analysed(
     let Some(name) = &options.sensitivity else { return Ok(None) };
     let analysis = solving::analysis(name)?;
     let found = analysis.importance(&run.problem, &run.evaluation, options.samples)?;
-    if session.world.interrupted() {
+    if session.world.is_interrupted() {
         session.print(
             "\nThe sensitivity analysis was not made: the run was stopped before it ended.\n",
         );
@@ -630,7 +630,7 @@ fn left_journal(session: &mut Session, paths: [&Path; 2]) -> Result<Option<Vec<u
 
 /// What a simulation for the report may take once the user has stopped the run.
 fn hurry(session: &Session) -> Option<TimeBudget> {
-    let clock = session.world.clock().filter(|_| session.world.interrupted())?;
+    let clock = session.world.clock().filter(|_| session.world.is_interrupted())?;
     Some(TimeBudget { seconds: HURRY, clock })
 }
 

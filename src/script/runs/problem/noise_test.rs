@@ -63,7 +63,7 @@ pub(super) fn compare(
     questions: &Questions,
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if session.world.interrupted() {
+    if session.world.is_interrupted() {
         return Ok(());
     }
     let is_minimum = solution.outcome.ending.kind == EndingKind::Minimum;

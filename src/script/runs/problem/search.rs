@@ -98,7 +98,7 @@ impl Search {
         if let Some(stop) = self.run.stop() {
             return Some(Ending::of(stop));
         }
-        if session.world.interrupted() {
+        if session.world.is_interrupted() {
             let why = session.world.stop_reason().unwrap_or_else(|| "interrupted".to_owned());
             return Some(Ending::by_user(&format!(
                 "{why}: these are the best values found so far"
@@ -115,7 +115,7 @@ impl Search {
         }
         let Some(record) = self.run.step(seconds) else {
             let is_over = self.timer.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
-            let is_over = is_over && !session.world.interrupted();
+            let is_over = is_over && !session.world.is_interrupted();
             return is_over.then(|| Ending::of(self.run.end_by_time()));
         };
         self.checkpoint.note(session, &solving::encode(&record), seconds);
