@@ -41,22 +41,6 @@ fn matrix_of<'f>(file: &'f MatFile, name: &str) -> Result<Cow<'f, Matrix>, Fault
     Ok(Cow::Owned(Matrix::from_columns(first.values.len(), columns.len(), values)))
 }
 
-impl Session {
-    /// Says what should be known of data that were read: notes about the columns, and in a table the
-    /// lines that were left out.
-    pub(crate) fn note_data(&mut self, file: &MatFile, notes: impl IntoIterator<Item = String>) {
-        let general = file.warnings.iter().filter(|_| file.is_table()).cloned();
-        let all: Vec<String> = general.chain(notes).collect();
-        for sentence in all {
-            let sentence = match file.file_name.as_str() {
-                "" => sentence,
-                name => format!("{name}: {sentence}"),
-            };
-            self.note_about_data(mat::errors::DATA_NOTE, sentence);
-        }
-    }
-}
-
 const READ_MATRIX_SIZE: &str = r#"
 function readMatrixSize "Numbers of rows and columns of a matrix in a file."
   input String fileName;

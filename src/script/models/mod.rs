@@ -8,6 +8,7 @@ pub mod checking;
 pub mod classes;
 pub mod compiled;
 pub(crate) mod constant_cache;
+pub(crate) mod data_notes;
 pub mod documents;
 pub mod exported;
 pub(crate) mod filter;

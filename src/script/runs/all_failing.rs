@@ -26,14 +26,14 @@ impl Session {
         genomes: &Genomes,
         simulated: &Simulated,
     ) -> Result<(), Failure> {
-        let recorder = &self.identification().recorder;
+        let recorder = &self.extension::<Identification>().recorder;
         if recorder.evaluations > recorder.observed.failures || genomes.len() < ENOUGH {
             return Ok(());
         }
         let main = recorder.observed.main_cause().map(|(cause, _)| cause);
         let example = simulated.failures.iter().flatten().find(|one| Some(&*one.cause) == main);
         let fault = nothing_simulated(recorder, "stops", example);
-        self.identification().is_hopeless = true;
+        self.extension::<Identification>().is_hopeless = true;
         let first = simulated.failures.iter().position(Option::is_some).unwrap_or(0);
         let place = self.place_of_failure((study, x), genomes.row(first));
         Err(match place {

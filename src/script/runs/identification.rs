@@ -1,27 +1,21 @@
-//! Identification as scripts do it: the measured data, the evaluation of populations, and the
-//! report at the end of a run.
+//! Identification as scripts do it: what a session knows of the run, the measured data, and the
+//! evaluators of models.
 
 use super::problem::fault_codes;
-use super::tracing;
+use crate::Session;
 use crate::builtins::Failure;
-use crate::diag::{Code, Diagnostic, Fault};
-use crate::errors::INTERRUPTED;
+use crate::diag::Fault;
 use crate::ga::Genomes;
-use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
-use crate::identify::problem::{
-    Finding, FindingKind, Fingerprint, NOISE_OF_FORMULAS, ScriptError, Severity, Solution,
-};
+use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
+use crate::identify::problem::Fingerprint;
 use crate::identify::{
-    CompiledModel, Ending, Evaluator, Measurement, Model as _, Quantity, Question, Recorder,
-    Simulated, Study,
+    CompiledModel, Evaluator, Measurement, Model as _, Quantity, Question, Recorder, Study,
 };
+use crate::models::data_notes::DataNotes;
 use crate::models::in_use::InUse;
 use crate::models::translated::Translated;
 use crate::models::uses::Uses;
 use crate::models::{simulation, static_curve};
-use crate::registry::BAD_OPTION;
-use crate::source::Span;
-use crate::{Reporting, Session};
 use crate::{bail, mat, results};
 use std::path::Path;
 use std::sync::Arc;
@@ -35,34 +29,30 @@ pub(crate) struct Identification {
     /// What was observed of the run.
     pub(crate) recorder: Recorder,
     /// The evaluators of the last requests, for the next generation; the latest is the last.
-    prepared: Vec<Prepared>,
+    pub(super) prepared: Vec<Prepared>,
     /// What was viewed last: model, individuals, and how many generations there will be.
     pub(super) shown: Option<(Study, Genomes, u64)>,
     /// When the run began.
-    started: Option<f64>,
+    pub(super) started: Option<f64>,
     /// Whether measured data could not be read.
     pub(crate) data_missing: bool,
     /// Whether it was reported that nothing can be simulated.
     pub(super) is_hopeless: bool,
     /// Runs reported so far.
-    reported: usize,
+    pub(super) reported: usize,
     /// The number of the first message of this run.
-    first_message: usize,
-    /// What was said of the data of this run.
-    data_notes: Vec<String>,
-    /// How many of these are older than the measurement read last.
-    older_notes: usize,
+    pub(super) first_message: usize,
 }
 
 /// An evaluator that is ready for the next population.
-struct Prepared {
+pub(super) struct Prepared {
     /// With the model as it was in use.
-    request: Request,
+    pub(super) request: Request,
     /// What its model depends on.
     uses: Uses,
     /// The class that is simulated, which may be one around the model.
     class: String,
-    evaluator: Evaluator,
+    pub(super) evaluator: Evaluator,
 }
 
 /// The arguments of `Eval` but for the population.
@@ -77,15 +67,6 @@ pub(crate) struct Request {
 }
 
 impl Session {
-    /// The identification of this session; its report is made when the outermost script ends.
-    pub(crate) fn identification(&mut self) -> &mut Identification {
-        let now = self.world.monotonic_seconds();
-        self.at_end(report);
-        let identification = self.extension::<Identification>();
-        identification.started.get_or_insert(now);
-        identification
-    }
-
     /// Reads the matrices `names` of X and Y from a file.
     pub(crate) fn read_measurement(
         &mut self,
@@ -116,22 +97,12 @@ impl Session {
         if x.is_empty() {
             bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
         }
-        let identification = self.extension::<Identification>();
-        identification.older_notes = identification.data_notes.len();
+        self.extension::<DataNotes>().begin_measurement();
         self.note_data(&content, notes);
         for ((name, unit), values) in names.iter().zip(&units).zip([&x, &y]) {
             self.column_measured((file, name), unit.as_deref(), values);
         }
         Ok(Measurement { file: file.to_owned(), x, y })
-    }
-
-    /// Says something about the data that a script compares its models with: now and in the report.
-    pub(crate) fn note_about_data(&mut self, code: Code, sentence: String) {
-        let notes = &mut self.extension::<Identification>().data_notes;
-        if !notes.contains(&sentence) {
-            notes.push(sentence.clone());
-        }
-        self.note(code, sentence);
     }
 
     /// A number for the place in the scripts that a command was called from: the same whenever the
@@ -144,67 +115,6 @@ impl Session {
         }
         site.add(&span.start.to_le_bytes());
         site.number()
-    }
-
-    /// Notes measured data. Data read after generations have been evaluated begin another run: the
-    /// one before is reported.
-    pub(crate) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
-        if !self.identification().recorder.observed.history.generations.is_empty() {
-            let identification = self.identification();
-            let own = identification.data_notes.split_off(identification.older_notes);
-            report_run(self)?;
-            self.identification().data_notes = own;
-        }
-        let identification = self.identification();
-        identification.recorder.measured(measurement);
-        identification.data_missing = false;
-        Ok(())
-    }
-
-    /// Simulates a population, whose individuals have numbers from the second value on; the evaluator
-    /// is kept for the next one.
-    pub(crate) fn evaluate_population(
-        &mut self,
-        request: Request,
-        genomes: &Genomes,
-    ) -> Result<(Simulated, u64), Failure> {
-        let mut prepared = match self.take_prepared(&request)? {
-            Some(prepared) => prepared,
-            None => self.prepare(&request)?,
-        };
-        // From here on it is a request for the model with what was set by hand.
-        let request = prepared.request.clone();
-        let evaluator = &mut prepared.evaluator;
-        let simulated = match self.journaled(&request, &evaluator.settings_text(), genomes)? {
-            Some(known) => {
-                if self.is_to_be_checked() {
-                    check(evaluator, genomes, &known).inspect_err(|_| self.refuse_to_resume())?;
-                }
-                known
-            }
-            None => {
-                evaluator.cancel_by(self.world.interrupt_flag());
-                let simulated = evaluator.evaluate(genomes)?;
-                if evaluator.is_cancelled() {
-                    // The population is simulated again when the run is resumed.
-                    return Err(Fault::new(INTERRUPTED, "interrupted").into());
-                }
-                self.journal(&request, &evaluator.settings_text(), genomes, &simulated);
-                simulated
-            }
-        };
-        let identification = self.identification();
-        let recorder = &mut identification.recorder;
-        let first = recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
-        let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
-        let is_relative = evaluator.model().is_relative(&study.y.name);
-        identification.prepared.push(prepared);
-        let individuals = first..first + genomes.len() as u64;
-        self.population_simulated(&study, individuals, is_relative);
-        self.trace_simulation((&study, &x), genomes, &simulated)?;
-        self.show_run(&study, genomes);
-        self.stop_if_all_fail((&study, &x), genomes, &simulated)?;
-        Ok((simulated, first))
     }
 
     /// Simulates one individual once more, with the model and at the points of the last `Eval`: Y
@@ -221,21 +131,6 @@ impl Session {
         }
     }
 
-    fn trace_simulation(
-        &mut self,
-        (study, x): (&Study, &[f64]),
-        genomes: &Genomes,
-        simulated: &Simulated,
-    ) -> Result<(), Fault> {
-        self.traced(|tracer, place| {
-            let failed = simulated.failures.iter().enumerate();
-            let failures =
-                failed.filter_map(|(k, why)| Some((k as u32, why.as_ref()?.to_string())));
-            let subject = tracing::subject(study);
-            tracer.simulated(place, (&subject, x), genomes.values(), failures.collect());
-        })
-    }
-
     /// Loads the file or folder that the model of a request is in.
     pub(super) fn load_model_of(&mut self, request: &Request) -> Result<(), Failure> {
         let path = Path::new(&request.path);
@@ -243,14 +138,6 @@ impl Session {
             self.load_path(path)?;
         }
         Ok(())
-    }
-
-    /// Says why other ranks take no part, if that is so.
-    pub(super) fn note_idle_ranks(&mut self, reason: Option<&str>) {
-        if let Some(reason) = reason {
-            let text = format!("the other ranks take no part in the simulations, because {reason}");
-            self.note(RANKS_IDLE, text);
-        }
     }
 
     /// Measured X in the unit of the model; `None` where they are in it.
@@ -263,22 +150,6 @@ impl Session {
         let is_relative = model.is_relative(&name);
         let quantity = Quantity { name, unit };
         self.in_unit_of(&question.x, model.name(), (&quantity, is_relative))
-    }
-
-    /// Measured values in the unit of the variable that a request compares them with.
-    pub(super) fn measured_in_unit_of(
-        &mut self,
-        request: &Request,
-        measured: &[f64],
-    ) -> Result<Option<Vec<f64>>, Failure> {
-        let prepared = match self.take_prepared(request)? {
-            Some(prepared) => prepared,
-            None => self.prepare(request)?,
-        };
-        let study = prepared.evaluator.study().clone();
-        let is_relative = prepared.evaluator.model().is_relative(&study.y.name);
-        self.identification().prepared.push(prepared);
-        Ok(self.in_unit_of(measured, &study.model, (&study.y, is_relative)))
     }
 
     /// Refuses times that count from a date, and notes those that begin far after the simulation.
@@ -325,7 +196,7 @@ impl Session {
         Ok(())
     }
 
-    fn prepare(&mut self, request: &Request) -> Result<Prepared, Failure> {
+    pub(super) fn prepare(&mut self, request: &Request) -> Result<Prepared, Failure> {
         self.load_model_of(request)?;
         let in_use = self.in_use(&request.model, &request.question.parameters)?;
         let request = Request { model: in_use.shown.clone(), ..request.clone() };
@@ -342,7 +213,7 @@ impl Session {
         let mut question = request.question.clone();
         self.check_times(&question, &model)?;
         if let Some(x) = self.x_in_unit_of(&question, &model) {
-            self.identification().recorder.measured_over(&question.x, &x);
+            self.extension::<Identification>().recorder.measured_over(&question.x, &x);
             question.x = x;
         }
         let processors = self.world.processors();
@@ -355,52 +226,23 @@ impl Session {
 
     /// The evaluator of this request, if it is at hand and neither the classes of its model nor what
     /// was set by hand have changed since.
-    fn take_prepared(&mut self, request: &Request) -> Result<Option<Prepared>, Failure> {
-        let in_use = self.in_use(&request.model, &request.question.parameters)?;
+    pub(super) fn take_prepared(&mut self, request: &Request, in_use: &InUse) -> Option<Prepared> {
         let is_it = |known: &Prepared| {
             known.request.model == in_use.shown
                 && known.request.path == request.path
                 && known.request.question == request.question
         };
-        let prepared = &mut self.identification().prepared;
+        let prepared = &mut self.extension::<Identification>().prepared;
         if let Some(place) = prepared.iter().position(is_it) {
             let known = prepared.remove(place);
-            return Ok(self.classes.sources.are_unchanged(&known.uses).then_some(known));
+            return self.classes.sources.are_unchanged(&known.uses).then_some(known);
         }
         if prepared.len() >= PREPARED {
             prepared.remove(0);
         }
-        Ok(None)
+        None
     }
-}
 
-/// The first individual, which is the best where elites are kept, and another one are computed
-/// again: if a bit differs, the earlier run was that of another model.
-fn check(evaluator: &mut Evaluator, genomes: &Genomes, known: &Simulated) -> Result<(), Failure> {
-    let mut site = Fingerprint::default();
-    site.add_numbers(genomes.values());
-    let rows = [0, site.number() as usize % genomes.len().max(1)];
-    let points = known.rows.len() / genomes.len().max(1);
-    for row in rows.into_iter().filter(|row| *row < genomes.len()) {
-        let one = Genomes::new(genomes.row(row).len(), genomes.row(row).to_vec())?;
-        let now = evaluator.evaluate(&one)?;
-        let before = &known.rows[row * points..(row + 1) * points];
-        let differs =
-            |(a, b): (&f64, &f64)| a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan());
-        if before.len() != now.rows.len() || before.iter().zip(&now.rows).any(differs) {
-            bail!(
-                BAD_OPTION,
-                "the run cannot be resumed: individual {} now gives a different simulation \
-                 result", row + 1;
-                help: "restore the model, its libraries and tables, the settings of the \
-                       simulation, the program and the machine, or start again without `--resume`"
-            );
-        }
-    }
-    Ok(())
-}
-
-impl Session {
     /// The model of a request; where X is an input of it, one that is driven by the points.
     fn translated_for(
         &mut self,
@@ -420,105 +262,6 @@ impl Session {
 
     /// The class of the last `Eval`.
     pub(super) fn class_evaluated(&mut self) -> Option<String> {
-        self.identification().prepared.last().map(|prepared| prepared.class.clone())
+        self.extension::<Identification>().prepared.last().map(|prepared| prepared.class.clone())
     }
-}
-
-impl Session {
-    /// The first error of the run that the script did not handle, at the statement that failed.
-    fn unhandled_error(&mut self) -> Option<ScriptError> {
-        let next = self.output.messages.next_number();
-        let identification = self.extension::<Identification>();
-        let from = std::mem::replace(&mut identification.first_message, next);
-        let error = self.output.messages.first_unhandled(from)?;
-        let calls = error.trace.iter().map(|frame| frame.span);
-        let mut places = std::iter::once(error.span()).chain(calls);
-        let name = |span: Span| self.sources.get(span.source).map(|source| source.name.clone());
-        let is_script = |span: &Span| name(*span).is_some_and(|name| name.ends_with(".mos"));
-        let span = places.find(is_script).unwrap_or_else(|| error.span());
-        Some(ScriptError {
-            file: name(span).as_deref().unwrap_or_default().to_owned(),
-            line: self.sources.line_column(span).map_or(0, |place| place.line),
-            message: error.message.clone(),
-        })
-    }
-}
-
-/// What remains to be done when the outermost script ends.
-fn report(session: &mut Session) -> Result<(), Diagnostic> {
-    report_run(session).map_err(|fault| fault.at(Span::NONE))
-}
-
-/// The report of a run: the table for people, and the files for programs. Nothing when no
-/// individual was simulated successfully.
-fn report_run(session: &mut Session) -> Result<(), Fault> {
-    let interrupted = session.is_interrupted();
-    let error = session.unhandled_error();
-    let (processors, probe) = (session.world.processors(), session.options.probe);
-    let identification = session.extension::<Identification>();
-    let started = identification.started.take();
-    let recorder = identification.recorder.begin_next();
-    session.show_end(&recorder);
-    session.report_if_all_failed(&recorder, interrupted);
-    if session.options.reporting == Reporting::Off {
-        session.world.end_view();
-        return Ok(());
-    }
-    let identification = session.extension::<Identification>();
-    let Some(best) = recorder.best() else { return Ok(()) };
-    let mut noise = NOISE_OF_FORMULAS;
-    let mut models = Vec::new();
-    for compared in best.compared {
-        let own = |prepared: &&mut Prepared| {
-            prepared.evaluator.study() == &compared.study && prepared.evaluator.x() == compared.x
-        };
-        let own = identification.prepared.iter_mut().rev().find(own);
-        models.push(own.map(|own| {
-            noise = noise.max(own.evaluator.noise());
-            own.evaluator.model().clone()
-        }));
-    }
-    let compared: Vec<_> = best
-        .compared
-        .iter()
-        .zip(&models)
-        .filter_map(|(one, model)| {
-            let study = one.study.clone();
-            let is_relative = model.as_ref().is_some_and(|own| own.is_relative(&study.y.name));
-            Some((one.measured.clone()?, study, is_relative))
-        })
-        .collect();
-    let ending =
-        Ending { recorder: &recorder, models, noise, processors, probe, interrupted, error };
-    let Some(mut solution) = ending.solution() else { return Ok(()) };
-    session.world.end_view();
-    for (measured, study, is_relative) in compared {
-        session.compared(&measured, &study.model, (&study.y, is_relative));
-    }
-    let notes = std::mem::take(&mut session.extension::<Identification>().data_notes);
-    solution.findings.extend(notes.iter().cloned().map(about_data));
-    let now = session.world.monotonic_seconds();
-    let seconds = now - started.unwrap_or(now);
-    let said = if session.world.is_one_screen() { notes } else { Vec::new() };
-    let timed = |text: String| format!("{text}  {:<12} {seconds:.2} s\n", "time");
-    let [shown, whole] = [solution.text_after(&said), solution.text()].map(timed);
-    session.print_report(&shown, &whole, &solution.brief());
-    write_files(session, &solution, seconds)
-}
-
-fn about_data(sentence: String) -> Finding {
-    Finding::new(FindingKind::Data, sentence).severity(Severity::Information)
-}
-
-/// Writes the files of a run into the folder of the results; those of further runs of the session
-/// into folders within it.
-fn write_files(session: &mut Session, solution: &Solution, seconds: f64) -> Result<(), Fault> {
-    let identification = session.extension::<Identification>();
-    identification.reported += 1;
-    let run = identification.reported;
-    let mut folder = session.world.output_dir();
-    if run > 1 {
-        folder.push(format!("run-{run}"));
-    }
-    super::problem::write(session, &folder, solution, seconds)
 }

@@ -4,6 +4,7 @@
 use super::view::{Drawn, Progress, View};
 use crate::Session;
 use crate::identify::SearchRecord;
+use crate::identify::errors::RANKS_IDLE;
 use std::ops::ControlFlow;
 
 /// What became of a line: the search continues or ends; or why the line was refused.
@@ -40,6 +41,14 @@ impl Session {
             }
         }
         false
+    }
+
+    /// Says why other ranks take no part, if that is so.
+    pub(super) fn note_idle_ranks(&mut self, reason: Option<&str>) {
+        if let Some(reason) = reason {
+            let text = format!("the other ranks take no part in the simulations, because {reason}");
+            self.note(RANKS_IDLE, text);
+        }
     }
 }
 

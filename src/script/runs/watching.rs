@@ -2,6 +2,7 @@
 //! type between two of them.
 
 use super::changing;
+use super::identification::Identification;
 use super::interaction::reason;
 use super::view::{Drawn, Fitted, Progress, Spread, View};
 use crate::Session;
@@ -26,18 +27,21 @@ impl Session {
             _ => 0,
         };
         // It is read only, and put back.
-        let recorder = std::mem::take(&mut self.identification().recorder);
+        let recorder = std::mem::take(&mut self.extension::<Identification>().recorder);
         let progress = progress(&recorder, iterations);
         if self.show_search(progress, &recorder.observed, || drawn(&recorder, study, genomes)) {
-            self.identification().shown = Some((study.clone(), genomes.clone(), iterations));
+            self.extension::<Identification>().shown =
+                Some((study.clone(), genomes.clone(), iterations));
         }
-        self.identification().recorder = recorder;
+        self.extension::<Identification>().recorder = recorder;
     }
 
     /// The view of the whole run, where the run was viewed: each of the others is drawn before its
     /// generation is rated.
     pub(super) fn show_end(&mut self, recorder: &Recorder) {
-        let Some((study, genomes, total)) = self.identification().shown.take() else { return };
+        let Some((study, genomes, total)) = self.extension::<Identification>().shown.take() else {
+            return;
+        };
         let drawn = drawn(recorder, &study, &genomes);
         let view = View::of(progress(recorder, total), &recorder.observed, drawn);
         self.world.show_view(&view);
@@ -77,7 +81,7 @@ impl Session {
     fn typed(&mut self, line: &str) -> Result<(), Diagnostic> {
         let script = changing::parsed(self, "typed during a pause", line)?;
         self.change(&script, true)?;
-        let recorder = &mut self.identification().recorder;
+        let recorder = &mut self.extension::<Identification>().recorder;
         let generation = recorder.observed.history.generations.len() + 1;
         recorder.changes.push((generation, line.trim().to_owned()));
         Ok(())
