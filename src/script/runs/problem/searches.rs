@@ -1,10 +1,11 @@
 //! Further searches of one problem with other seeds, each with a journal of its own; the best of all
 //! becomes the run that statistics are made of.
 
+use super::RunOptions;
 use super::build::Built;
 use super::file::ProblemFile;
+use super::run_journal::{Journalled, open};
 use super::search::{Ending, Search};
-use super::{Journalled, RunOptions, open};
 use crate::Session;
 use crate::diag::Fault;
 use crate::ga::Mrg32k3a;
