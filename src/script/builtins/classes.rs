@@ -398,7 +398,7 @@ fn edited<T>(
         current = inner;
     }
     let result = edit(current);
-    session.define_class(&root)?;
+    session.classes.define(&root)?;
     Ok(result)
 }
 

@@ -105,7 +105,7 @@ end eraseClasses;
 fn erase_classes(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let names: Vec<String> = args.take("classnames")?;
     let removed: Vec<bool> =
-        names.iter().map(|name| session.remove_class(&Name::parse(name))).collect();
+        names.iter().map(|name| session.classes.remove(&Name::parse(name))).collect();
     Ok(removed.into_iter().all(|removed| removed).into())
 }
 
@@ -206,7 +206,7 @@ end deleteClass;
 
 fn delete_class(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: Name = args.take("className")?;
-    Ok(session.remove_class(&name).into())
+    Ok(session.classes.remove(&name).into())
 }
 
 const GET_CLASS_NAMES: &str = r#"

@@ -189,7 +189,7 @@ end getVersion;
 fn get_version(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("cl")?;
     if class.to_string() != "OpenModelica" {
-        let version = session.class_version(&class);
+        let version = session.classes.version_of(&class);
         return Ok(session.or_report(version).unwrap_or_default().into());
     }
     Ok(concat!("gapilib ", env!("CARGO_PKG_VERSION")).into())

@@ -233,7 +233,7 @@ fn apply(
         let before = class.clone();
         change(Arc::make_mut(&mut class));
         if *before != *class {
-            session.define_class(&class)?;
+            session.classes.define(&class)?;
         }
     }
     Ok(())

@@ -43,7 +43,7 @@ impl Session {
                 Ok(())
             }
             InteractiveKind::Declaration(clause) => self.declare(clause),
-            InteractiveKind::Class(class) => self.define_class(class),
+            InteractiveKind::Class(class) => self.classes.define(class),
             InteractiveKind::Import(import) => self.import(import),
             InteractiveKind::Command { name, argument } => self.command(name, argument),
         }

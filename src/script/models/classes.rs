@@ -2,7 +2,7 @@
 
 use super::constant_cache::ConstantCache;
 use super::library_files::Warnings;
-use super::stored::{History, Reads};
+use super::stored::{History, Reads, digest};
 use super::uses::LoadedSources;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::eval::Function;
@@ -11,6 +11,8 @@ use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::flatten::{Library, RecordedInput};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span};
+use crate::syntax;
+use crate::syntax::ast::ClassDefinition;
 use indexmap::IndexMap;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -283,4 +285,45 @@ impl Classes {
              folder with `--library`",
         )
     }
+
+    /// A class that a script defines; it replaces one of the same name.
+    pub(crate) fn define(&mut self, class: &Arc<ClassDefinition>) -> Result<(), Diagnostic> {
+        self.invalidate();
+        // An edited class still has the place of the text that it was read from.
+        let text = syntax::print::class(class);
+        self.history.note("class", &text);
+        self.sources.note(&[class.name.node.into()], &text);
+        self.library.define(class).map(|_| ())
+    }
+
+    /// A class that a run builds around a model; it replaces the one of the same name.
+    pub(crate) fn define_enclosing(
+        &mut self,
+        class: ClassDefinition,
+        enclosing: Enclosing,
+    ) -> Result<(), Diagnostic> {
+        self.invalidate();
+        let mut text = syntax::print::class(&class);
+        enclosing.recorded.iter().for_each(|input| text += &in_short(input));
+        self.history.note("enclosing", &text);
+        self.sources.note(&[class.name.node.into()], &text);
+        self.enclosing.retain(|known| known.name != enclosing.name);
+        self.enclosing.push(enclosing);
+        self.library.define(&Arc::new(class)).map(|_| ())
+    }
+
+    /// Removes a class; whether there was one.
+    pub(crate) fn remove(&mut self, name: &Name) -> bool {
+        self.invalidate();
+        self.history.note("remove", &name.to_string());
+        self.sources.remove(name);
+        name.is_simple() && name.first().is_some_and(|name| self.library.remove(name))
+    }
+}
+
+/// What tells the samples of an input from others.
+fn in_short(input: &RecordedInput) -> String {
+    let numbers = input.times.iter().chain(&*input.values);
+    let bytes: Vec<u8> = numbers.flat_map(|number| number.to_bits().to_le_bytes()).collect();
+    format!("{} {} {:?}", input.name, input.is_held, digest(&bytes))
 }

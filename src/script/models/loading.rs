@@ -1,18 +1,16 @@
 //! Loading classes: from files, folders and libraries, when they are first named.
 
-use super::classes::Enclosing;
+use super::class_search::package_in;
 use super::imported::refuse_as_text;
-use super::stored::digest;
 use super::uses::names_in;
 use crate::Session;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::errors::FILE_ERROR;
 use crate::eval::Function;
-use crate::flatten::{Library, RecordedInput};
+use crate::flatten::Library;
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax;
-use crate::syntax::ast::ClassDefinition;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -104,7 +102,7 @@ impl Session {
         if !self.classes.has_loaded(root) {
             self.load_library(root, &Name::default())?;
         }
-        let names = folders.iter().rev().map_while(|folder| self.package_in(folder));
+        let names = folders.iter().rev().map_while(|folder| package_in(&self.world, folder));
         Ok(Name::new(names.collect::<Vec<_>>()))
     }
 
@@ -188,7 +186,7 @@ impl Session {
     }
 
     fn load_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
-        for fault in self.passed_over(name) {
+        for fault in self.class_search().passed_over(name) {
             self.report(fault.at(self.call_site()).warning());
         }
         let Some(path) = self.search_class(name) else {
@@ -247,43 +245,9 @@ impl Session {
         self.or_report_all(found).unwrap_or(false)
     }
 
-    /// A class that a script defines; it replaces one of the same name.
-    pub(crate) fn define_class(&mut self, class: &Arc<ClassDefinition>) -> Result<(), Diagnostic> {
-        self.classes.invalidate();
-        // An edited class still has the place of the text that it was read from.
-        let text = syntax::print::class(class);
-        self.classes.history.note("class", &text);
-        self.classes.sources.note(&[class.name.node.into()], &text);
-        self.classes.library.define(class).map(|_| ())
-    }
-
-    /// A class that a run builds around a model; it replaces the one of the same name.
-    pub(crate) fn define_enclosing(
-        &mut self,
-        class: ClassDefinition,
-        enclosing: Enclosing,
-    ) -> Result<(), Diagnostic> {
-        self.classes.invalidate();
-        let mut text = syntax::print::class(&class);
-        enclosing.recorded.iter().for_each(|input| text += &in_short(input));
-        self.classes.history.note("enclosing", &text);
-        self.classes.sources.note(&[class.name.node.into()], &text);
-        self.classes.enclosing.retain(|known| known.name != enclosing.name);
-        self.classes.enclosing.push(enclosing);
-        self.classes.library.define(&Arc::new(class)).map(|_| ())
-    }
-
     /// Whether a class comes from a folder, so that its parts are read when they are needed.
     pub(crate) fn is_lazy(&self, name: &Name) -> bool {
         self.classes.file_of(name).is_some_and(|path| self.world.is_dir(path))
-    }
-
-    /// Removes a class; whether there was one.
-    pub(crate) fn remove_class(&mut self, name: &Name) -> bool {
-        self.classes.invalidate();
-        self.classes.history.note("remove", &name.to_string());
-        self.classes.sources.remove(name);
-        name.is_simple() && name.first().is_some_and(|name| self.classes.library.remove(name))
     }
 
     /// Removes all classes.
@@ -350,11 +314,4 @@ impl Session {
     pub fn source_file(&self, name: &Name) -> Option<PathBuf> {
         self.classes.file_of(&Name::new(name.first())).cloned()
     }
-}
-
-/// What tells the samples of an input from others.
-fn in_short(input: &RecordedInput) -> String {
-    let numbers = input.times.iter().chain(&*input.values);
-    let bytes: Vec<u8> = numbers.flat_map(|number| number.to_bits().to_le_bytes()).collect();
-    format!("{} {} {:?}", input.name, input.is_held, digest(&bytes))
 }

@@ -245,7 +245,7 @@ impl EnclosingClass {
             source,
             place,
         };
-        session.define_enclosing(class, enclosing).map_err(|error| vec![error])?;
+        session.classes.define_enclosing(class, enclosing).map_err(|error| vec![error])?;
         Ok(name)
     }
 
