@@ -135,9 +135,9 @@ fn check_count(names: &[String], values: usize) -> Result<(), Fault> {
 
 /// Simulates with values that hold for one call: the next simulations begin from those before it.
 fn for_this_call<T>(session: &mut Session, work: impl FnOnce(&mut Session) -> T) -> T {
-    let before = session.current_values();
+    let before = session.models.current.clone();
     let done = work(session);
-    session.restore_values(before);
+    session.models.current = before;
     done
 }
 

@@ -22,7 +22,7 @@ struct LastFinal {
 
 /// Writes the end of the last simulation into the working directory.
 pub(super) fn write_final(session: &mut Session) {
-    let Some(text) = session.last_end().map(FinalState::text) else { return };
+    let Some(text) = session.models.end.as_ref().map(FinalState::text) else { return };
     let path = session.world.absolute(Path::new(FINAL));
     let beginning = session.world.read_start(&path, final_state::BEGINNING);
     if beginning.is_ok_and(|bytes| FinalState::is_in(&bytes)) {
@@ -51,7 +51,7 @@ pub(super) fn final_state(session: &mut Session, file: &str) -> Result<FinalStat
         (_, Some(_)) => false,
         (_, None) => file == FINAL,
     };
-    match session.last_end() {
+    match session.models.end.as_ref() {
         Some(end) if is_last => Ok(end.clone()),
         None if is_last => bail!(
             BAD_ARGUMENT,

@@ -83,7 +83,7 @@ fn initialized(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
         );
     }
     if !is_initialized {
-        session.import_states(IndexMap::new());
+        session.models.import_states(IndexMap::new());
     }
     Ok(Value::nothing())
 }

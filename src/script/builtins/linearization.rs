@@ -132,10 +132,10 @@ fn translated_and_linearized(
     let flags = SimulationFlags::parse(flags).at(at).map_err(|error| vec![error])?;
     let options = flags.applied_to(completed(options, &model.program.experiment()));
     let options = with_method_of_ours(session, options);
-    let before = session.current_values();
+    let before = session.models.current.clone();
     let set = flags.apply(session).at(at);
     let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &options, &[]));
-    session.restore_values(before);
+    session.models.current = before;
     let linear = linear?;
     let text = as_model(&linear, class).at(at).map_err(|error| vec![error])?;
     let written = write_results(session, &linear.results, file)

@@ -218,12 +218,12 @@ pub(super) fn run(
     let filter = own_filter.as_ref().unwrap_or(filter);
     let file = flags.result_file(file);
     let file = file.as_str();
-    let before = session.current_values();
+    let before = session.models.current.clone();
     let set = flags.apply(session).at(at);
     let applied = with_method_of_ours(session, flags.applied_to(options.clone()));
     let done =
         set.map_err(Unfinished::from).and_then(|()| simulation::simulate(session, model, &applied));
-    session.restore_values(before);
+    session.models.current = before;
     match done {
         Ok(done) => {
             let table = recorded(done.table, filter);

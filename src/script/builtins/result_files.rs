@@ -153,7 +153,7 @@ pub(crate) fn end_writing(session: &mut Session, error: Option<&Diagnostic>) {
     if let (Some(problem), true) = (&writing.expected.problem, is_missing) {
         let file = writing.expected.files.first().map(|file| file.to_string_lossy().into_owned());
         last_results::note_none(session, problem, &file.unwrap_or_default(), cause);
-        session.forget_end();
+        session.models.end = None;
     }
 }
 

@@ -45,7 +45,7 @@ impl Host for Session {
     }
 
     fn meaning_elsewhere(&mut self, name: &str) -> Option<String> {
-        self.trajectory_help(name)
+        self.models.trajectory_help(name)
     }
 
     fn function_names(&mut self) -> Vec<String> {

@@ -169,4 +169,35 @@ impl CompiledModels {
     pub(crate) fn is_new_note(&mut self, name: Ident) -> bool {
         self.noted.insert(name)
     }
+
+    /// What scripts changed the model translated last to, and the model itself.
+    pub(super) fn shaped(&self) -> impl Iterator<Item = Arc<Translated>> + use<> {
+        let current = self.current.as_ref();
+        let changed = current.and_then(|current| current.changes.model()).cloned();
+        changed.into_iter().chain(current.map(|current| current.model.clone()))
+    }
+
+    /// How a script reads a variable of the model translated last, which its own names do not reach.
+    pub(crate) fn trajectory_help(&self, name: &str) -> Option<String> {
+        let model = self.last().filter(|model| model.declarations.contains_key(name))?;
+        Some(format!(
+            "`{name}` is a variable of `{}`, not of the script: read its values from the result file, \
+             `readTrajectory(\"dsres.mat\", {{\"{name}\"}}, readTrajectorySize(\"dsres.mat\"))`",
+            model.problem
+        ))
+    }
+
+    /// Values of parameters that were set by hand, by their names.
+    pub(super) fn values_set_by_hand(&self) -> Vec<(Arc<str>, f64)> {
+        let current = self.current.iter();
+        current.flat_map(|current| current.overrides.clone()).collect()
+    }
+
+    /// Gives states and discrete variables of the model translated last values at the start of its next simulations,
+    /// whatever its initial equations say; none to take them back.
+    pub(crate) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
+        if let Some(current) = &mut self.current {
+            current.imported = states;
+        }
+    }
 }

@@ -89,7 +89,7 @@ pub(crate) fn with_inputs_to_come<T>(
 /// What is wrong with the model; what it does that units cannot, with the place.
 pub fn unit(session: &mut Session, problem: &str, form: Form<'_>) -> Result<Unit, Vec<Diagnostic>> {
     translate(session, problem)?;
-    let before = session.current_values();
+    let before = session.models.current.clone();
     let mut made = Made::default();
     let varied =
         session.vary_current(|model, flat| prepared(model, flat.clone(), &mut made).map(Some));
@@ -97,7 +97,7 @@ pub fn unit(session: &mut Session, problem: &str, form: Form<'_>) -> Result<Unit
         let at = session.call_site();
         of_program(session, (problem, &model), &made, form).at(at).map_err(|error| vec![error])
     });
-    session.restore_values(before);
+    session.models.current = before;
     if unit.is_ok() {
         note_losses(session, &made);
     }
@@ -162,7 +162,7 @@ fn of_program(
             return Err(reads_derivative(input));
         }
     }
-    let values = session.values_set_by_hand();
+    let values = session.models.values_set_by_hand();
     let values = values
         .iter()
         .filter_map(|(name, value)| Some((program.find_parameter(name).ok()?, *value)));

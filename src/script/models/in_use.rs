@@ -48,7 +48,7 @@ impl Session {
             return Ok(plain);
         };
         translate(self, &last.problem)?;
-        let Some(current) = self.current_values() else { return Ok(plain) };
+        let Some(current) = self.models.current.clone() else { return Ok(plain) };
         current.check_set().at(self.call_site()).map_err(|error| vec![error])?;
         if !current.imported.is_empty() {
             self.note_not_continued(problem);

@@ -37,10 +37,10 @@ pub fn linearized(
     options: &SimulationOptions,
     outputs: &[String],
 ) -> Result<Linear, Vec<Diagnostic>> {
-    let before = session.current_values();
+    let before = session.models.current.clone();
     let linear =
         with_inputs_to_come(session, |session| linearized_variant(session, options, outputs));
-    session.restore_values(before);
+    session.models.current = before;
     linear
 }
 

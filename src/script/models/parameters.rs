@@ -2,8 +2,6 @@
 
 use super::addressing::{Addressed, addressed, all_indices, flat_name};
 use super::changes::{Changed, Given};
-use super::compiled::Current;
-use super::final_state::FinalState;
 use super::ranges::Range;
 use super::translated::Translated;
 use super::typed::{number_in, number_of, unquoted};
@@ -21,8 +19,6 @@ use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, ReferencePart};
 use crate::value::{ArrayValue, Value, sizes};
 use crate::{Dialect, Session};
-use indexmap::IndexMap;
-use std::sync::Arc;
 
 impl Session {
     /// Sets a flag, or a parameter of the model translated last.
@@ -44,16 +40,6 @@ impl Session {
         Ok(true)
     }
 
-    /// How a script reads a variable of the model translated last, which its own names do not reach.
-    pub(crate) fn trajectory_help(&self, name: &str) -> Option<String> {
-        let model = self.models.last().filter(|model| model.declarations.contains_key(name))?;
-        Some(format!(
-            "`{name}` is a variable of `{}`, not of the script: read its values from the result file, \
-             `readTrajectory(\"dsres.mat\", {{\"{name}\"}}, readTrajectorySize(\"dsres.mat\"))`",
-            model.problem
-        ))
-    }
-
     /// Says once for each flag that it has no effect.
     fn note_idle_flag(&mut self, flag: &ComponentReference) {
         let name = flag.name().to_string();
@@ -68,7 +54,7 @@ impl Session {
             bail!(BAD_PARAMETER_VALUE, "subscripts of a model component must be Integers")
         };
         let (target, suffix) = without_start(target);
-        let found = self.shaped_models().find_map(|model| addressed(&model, &target));
+        let found = self.models.shaped().find_map(|model| addressed(&model, &target));
         let Some(found) = found else {
             let Some(number) = value.as_real() else {
                 return Err(match self.models.last() {
@@ -88,13 +74,6 @@ impl Session {
         done.inspect_err(|_| self.models.current = before)
     }
 
-    /// What scripts changed the model translated last to, and the model itself.
-    fn shaped_models(&self) -> impl Iterator<Item = Arc<Translated>> + use<> {
-        let current = self.models.current.as_ref();
-        let changed = current.and_then(|current| current.changes.model()).cloned();
-        changed.into_iter().chain(current.map(|current| current.model.clone()))
-    }
-
     /// Gives scalars values: each by itself, or with the array that it is an element of where that
     /// is a structural parameter.
     fn set_elements(
@@ -104,7 +83,7 @@ impl Session {
         numbers: &[f64],
     ) -> Result<(), Fault> {
         let has_slot = |name: &String| {
-            self.shaped_models().any(|model| model.program.find_parameter(name).is_ok())
+            self.models.shaped().any(|model| model.program.find_parameter(name).is_ok())
         };
         let is_tunable = suffix.is_empty() && found.names.iter().all(has_slot);
         let array = found.array().filter(|_| !is_tunable && suffix.is_empty());
@@ -143,7 +122,7 @@ impl Session {
     /// # Errors
     /// A name that is no parameter, or one that cannot be set without translating again.
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Fault> {
-        let model = self.shaped_models().find(|model| model.program.find_parameter(name).is_ok());
+        let model = self.models.shaped().find(|model| model.program.find_parameter(name).is_ok());
         let Some(current) = &mut self.models.current else { return Err(no_model(name)) };
         if let Some(model) = model {
             check_value(&model, name, value)?;
@@ -197,40 +176,6 @@ impl Session {
         self.set_parameter(name, value)
     }
 
-    /// The model translated last and the values that it has, to be restored.
-    pub(crate) fn current_values(&self) -> Option<Current> {
-        self.models.current.clone()
-    }
-
-    /// Values of parameters that were set by hand, by their names.
-    pub(super) fn values_set_by_hand(&self) -> Vec<(Arc<str>, f64)> {
-        let current = self.models.current.iter();
-        current.flat_map(|current| current.overrides.clone()).collect()
-    }
-
-    /// Takes back what was set since.
-    pub(crate) fn restore_values(&mut self, before: Option<Current>) {
-        self.models.current = before;
-    }
-
-    /// There is no simulation whose end others could continue.
-    pub(crate) fn forget_end(&mut self) {
-        self.models.end = None;
-    }
-
-    /// Where the last simulation ended.
-    pub(crate) fn last_end(&self) -> Option<&FinalState> {
-        self.models.end.as_ref()
-    }
-
-    /// Gives states and discrete variables of the model translated last values at the start of its next simulations,
-    /// whatever its initial equations say; none to take them back.
-    pub(crate) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
-        if let Some(current) = &mut self.models.current {
-            current.imported = states;
-        }
-    }
-
     /// Whether a name that a script assigns to means a parameter of the model translated last: no script
     /// has had a variable of the name before.
     pub(crate) fn is_of_model(&self, name: Ident) -> bool {
@@ -274,7 +219,8 @@ impl Session {
         let is_model = match target.parts.as_slice() {
             [_] => self.is_of_model(name),
             _ => self
-                .shaped_models()
+                .models
+                .shaped()
                 .any(|model| addressed(&model, &without_start(target).0).is_some()),
         };
         if is_model {

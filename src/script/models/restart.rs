@@ -41,7 +41,7 @@ impl Session {
                 help: "use the final state of a simulation of this model"));
         }
         self.adopt_parameters(&model, state)?;
-        self.import_states(imported);
+        self.models.import_states(imported);
         if !missing.is_empty() {
             let text = format!(
                 "`{from}` has no values of these variables: they start as the model says: {}",

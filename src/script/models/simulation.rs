@@ -647,7 +647,7 @@ fn result_table(
 impl Session {
     /// Puts a variant of the model translated last, or of what scripts changed it to, in its place;
     /// its parameters have the values that scripts gave. `None`: it stays as it is.
-    /// `Session::restore_values` takes it back.
+    /// Who puts back the one before takes it back.
     pub(crate) fn vary_current(
         &mut self,
         variant: impl FnOnce(&Translated, &FlatModel) -> Result<Option<Translated>, Diagnostic>,

@@ -58,7 +58,7 @@ impl Session {
     /// point where these are evaluated one by one.
     fn place_of_failure(&mut self, (study, x): (&Study, &[f64]), genes: &[f64]) -> Option<Span> {
         let class = self.class_evaluated()?;
-        let before = (self.current_values(), self.models.end.clone());
+        let before = (self.models.current.clone(), self.models.end.clone());
         let found = self.failure(&class, study, x, genes);
         (self.models.current, self.models.end) = before;
         found.map(|diagnostic| diagnostic.span()).filter(|span| span.is_known())
