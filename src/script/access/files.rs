@@ -313,4 +313,20 @@ impl SessionWorld {
     pub(crate) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
         self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
     }
+
+    /// Changes the working directory.
+    pub(crate) fn change_dir(&mut self, path: &str) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        // The answer does not reveal which folders exist elsewhere; those that the run lies in are known.
+        let absolute = self.world.absolute(&path);
+        if !self.world.current_dir().starts_with(&absolute) {
+            self.may(Access::Read, &absolute)?;
+        }
+        let changed = self.world.set_current_dir(&path);
+        changed.map_err(|error| {
+            let here = self.world.current_dir();
+            cannot("change to", &path, &error)
+                .help(format!("the working directory is still `{}`", here.display()))
+        })
+    }
 }

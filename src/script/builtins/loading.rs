@@ -56,7 +56,7 @@ fn open_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     }
     if let (true, Some(folder)) = (change, found.as_deref().and_then(Path::parent)) {
         session.world.trust_results(folder);
-        let changed = session.go_to(&folder.to_string_lossy());
+        let changed = session.world.change_dir(&folder.to_string_lossy());
         return Ok(session.succeeded(changed));
     }
     Ok(true.into())

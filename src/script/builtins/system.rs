@@ -165,7 +165,7 @@ end setWorkDirectory;
 "#;
 
 fn set_work_directory(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    session.go_to(&args.take::<String>("directory")?)?;
+    session.world.change_dir(&args.take::<String>("directory")?)?;
     Ok(Value::nothing())
 }
 
@@ -211,7 +211,7 @@ end cd;
 fn cd_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let directory: String = args.take("newWorkingDirectory")?;
     if !directory.is_empty() {
-        let changed = session.go_to(&directory);
+        let changed = session.world.change_dir(&directory);
         session.or_report(changed);
     }
     get_work_directory(session, args)

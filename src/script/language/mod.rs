@@ -19,6 +19,7 @@ pub(crate) mod parsed_scripts;
 pub mod parsing;
 pub mod script_checks;
 mod script_files;
+mod script_search;
 mod scripts;
 mod statements;
 pub(crate) mod statuses;

@@ -1,6 +1,5 @@
 //! Interactive statements, one after another.
 
-use crate::access::policy::Access;
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::errors::BAD_IMPORT;
 use crate::eval::errors::WRONG_OUTPUTS;
@@ -13,7 +12,6 @@ use crate::syntax::ast::{
     InteractiveStatement, Statement, StatementKind,
 };
 use crate::{Session, builtins};
-use std::path::Path;
 use std::sync::Arc;
 
 impl Session {
@@ -200,26 +198,10 @@ impl Session {
     /// Changes the working directory and shows it; an empty path only shows it.
     pub(crate) fn change_directory(&mut self, path: &str) -> Result<(), Fault> {
         if !path.is_empty() {
-            self.go_to(path)?;
+            self.world.change_dir(path)?;
         }
         let shown = format!("{}\n", self.world.current_dir().display());
         self.print(&shown);
         Ok(())
-    }
-
-    /// Changes the working directory.
-    pub(crate) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
-        let path = self.world.expanded(Path::new(path));
-        // The answer does not reveal which folders exist elsewhere; those that the run lies in are known.
-        let absolute = self.world.absolute(&path);
-        if !self.world.current_dir().starts_with(&absolute) {
-            self.world.may(Access::Read, &absolute)?;
-        }
-        let changed = self.world.set_current_dir(&path);
-        changed.map_err(|error| {
-            let here = self.world.current_dir();
-            crate::access::faults::cannot("change to", &path, &error)
-                .help(format!("the working directory is still `{}`", here.display()))
-        })
     }
 }
