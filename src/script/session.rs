@@ -1,4 +1,12 @@
 //! The session: the parts that last from one statement to the next.
+//!
+//! Its methods lie in layers, of which none calls one above it. From bottom to top:
+//! 1. reports and notes, here, over the outside as scripts may use it (`access`);
+//! 2. libraries, the loading of classes, documents and resources (`models`);
+//! 3. translated models and values of their parameters (`models`);
+//! 4. constants, what called names stand for, commands, expressions, declarations, statements and
+//!    scripts (`language`);
+//! 5. the session as evaluation sees it (`language::host`); commands and runs are reached through it.
 
 use super::access::SessionWorld;
 use super::access::faults::cannot;

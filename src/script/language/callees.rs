@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Names looked up before.
 #[derive(Default)]
-pub struct Callees {
+pub(crate) struct Callees {
     state: (u64, Dialect),
     known: FxHashMap<Name, Option<Known>>,
     /// Those of one identifier, found without making a name of it.
@@ -39,7 +39,12 @@ impl Known {
 
 impl Callees {
     /// What the name stood for at this revision of the classes; `None` if that is not known.
-    pub fn get(&mut self, name: &Name, revision: u64, dialect: Dialect) -> Option<Option<Callee>> {
+    pub(crate) fn get(
+        &mut self,
+        name: &Name,
+        revision: u64,
+        dialect: Dialect,
+    ) -> Option<Option<Callee>> {
         self.keep_up(revision, dialect);
         Some(self.known.get(name)?.as_ref().map(Known::callee))
     }
@@ -63,7 +68,7 @@ impl Callees {
     }
 
     /// Remembers an answer.
-    pub fn put(&mut self, name: &Name, callee: Option<&Callee>) {
+    pub(crate) fn put(&mut self, name: &Name, callee: Option<&Callee>) {
         self.known.insert(name.clone(), callee.map(Known::of));
     }
 
@@ -73,7 +78,7 @@ impl Callees {
     }
 
     /// Forgets everything.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.known.clear();
         self.simple.clear();
     }

@@ -31,7 +31,7 @@ pub struct RunStatus {
 
 /// Why statements are no longer executed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stop {
+pub(crate) enum Stop {
     /// `exit` was called.
     Exit(i32),
     /// Ctrl-C.
@@ -41,11 +41,11 @@ pub enum Stop {
 }
 
 /// The iteration of a loop, from 0, and the number of iterations if it is known.
-pub type Iteration = (usize, Option<usize>);
+pub(crate) type Iteration = (usize, Option<usize>);
 
 /// Where the execution of scripts is.
 #[derive(Debug, Default)]
-pub struct Execution {
+pub(crate) struct Execution {
     /// How many scripts have called each other.
     scripts: usize,
     stop: Option<Stop>,
@@ -64,12 +64,12 @@ pub struct Execution {
 
 impl Execution {
     /// A script begins.
-    pub fn enter(&mut self) {
+    pub(crate) fn enter(&mut self) {
         self.scripts += 1;
     }
 
     /// The innermost script ends.
-    pub fn leave(&mut self) {
+    pub(crate) fn leave(&mut self) {
         self.scripts -= 1;
     }
 
@@ -79,17 +79,17 @@ impl Execution {
     }
 
     /// Whether a statement of a text that is no file is being executed, not one of a script that it runs.
-    pub fn is_typed(&self) -> bool {
+    pub(crate) fn is_typed(&self) -> bool {
         !self.is_file && self.scripts <= 1
     }
 
     /// How many scripts have called each other.
-    pub fn scripts(&self) -> usize {
+    pub(crate) fn scripts(&self) -> usize {
         self.scripts
     }
 
     /// Why execution stops, if it does.
-    pub fn stop(&self) -> Option<Stop> {
+    pub(crate) fn stop(&self) -> Option<Stop> {
         self.stop
     }
 
@@ -99,12 +99,12 @@ impl Execution {
     }
 
     /// The script asks to end with this status.
-    pub fn exit(&mut self, status: i32) {
+    pub(crate) fn exit(&mut self, status: i32) {
         self.stop = Some(Stop::Exit(status));
     }
 
     /// Where the command that is being run was called.
-    pub fn call(&self) -> Span {
+    pub(crate) fn call(&self) -> Span {
         self.call.unwrap_or(Span::NONE)
     }
 
@@ -134,12 +134,12 @@ impl Execution {
     }
 
     /// Statements below the top level begin.
-    pub fn descend(&mut self) {
+    pub(crate) fn descend(&mut self) {
         self.depth += 1;
     }
 
     /// Statements below the top level end.
-    pub fn ascend(&mut self) {
+    pub(crate) fn ascend(&mut self) {
         self.depth -= 1;
     }
 
@@ -154,17 +154,17 @@ impl Execution {
     }
 
     /// The iteration of the outermost loop being run.
-    pub fn iteration(&self) -> Option<Iteration> {
+    pub(crate) fn iteration(&self) -> Option<Iteration> {
         self.iteration
     }
 
     /// The outermost loop is in this iteration.
-    pub fn iterate(&mut self, iteration: Iteration) {
+    pub(crate) fn iterate(&mut self, iteration: Iteration) {
         self.iteration = Some(iteration);
     }
 
     /// How the run ended, with so many errors that the script did not ask for.
-    pub fn end(&mut self, errors: usize, strictness: Strictness) -> RunStatus {
+    pub(crate) fn end(&mut self, errors: usize, strictness: Strictness) -> RunStatus {
         let stop = self.stop.take();
         let interrupted = stop == Some(Stop::Interrupt);
         let exit = match stop {

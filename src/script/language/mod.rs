@@ -1,12 +1,12 @@
 //! The script language: statements, expressions and calls of a session, scripts that run scripts,
 //! and what is shown of them.
 
-pub mod callees;
+mod callees;
 mod commands;
 mod constants;
 mod declarations;
 pub mod echo;
-pub mod execution;
+pub(crate) mod execution;
 pub mod expectation;
 mod expressions;
 pub(crate) mod follow_up;

@@ -118,7 +118,7 @@ impl Output {
     }
 
     /// The answers since [`Output::begin_collecting`].
-    pub fn collected(&mut self) -> String {
+    pub(super) fn collected(&mut self) -> String {
         self.collected.pop().unwrap_or_default()
     }
 

@@ -20,7 +20,7 @@ const UNSET: &[(&str, bool)] = &[("Advanced.StoreProtectedVariables", true)];
 const FLAG_ROOTS: &[&str] = &["Advanced", "Hidden", "Evaluate", "Design", "Check", "Dymola"];
 
 /// What scripts have named.
-pub struct Workspace {
+pub(crate) struct Workspace {
     /// The variables of the scripts.
     pub variables: Scope,
     /// Functions that names stand for, looked up before.
@@ -63,7 +63,7 @@ impl Workspace {
     }
 
     /// The value of the flag of this name, if it was set.
-    pub fn flag(&self, name: &str) -> Option<&Value> {
+    pub(crate) fn flag(&self, name: &str) -> Option<&Value> {
         self.flags.get(name)
     }
 
@@ -79,7 +79,7 @@ impl Workspace {
     }
 
     /// Whether a flag changes anything.
-    pub fn has_effect(flag: &str) -> bool {
+    pub(crate) fn has_effect(flag: &str) -> bool {
         UNSET.iter().any(|(known, _)| *known == flag)
     }
 
@@ -93,7 +93,7 @@ impl Workspace {
     }
 
     /// A name stands for another from here on.
-    pub fn import(&mut self, alias: Ident, name: Name) {
+    pub(crate) fn import(&mut self, alias: Ident, name: Name) {
         self.imports.insert(alias, name);
     }
 
@@ -103,7 +103,7 @@ impl Workspace {
     }
 
     /// What a name may denote: itself, and what the imports of the scripts make of it.
-    pub fn candidates(&self, name: &Name) -> Vec<Name> {
+    pub(crate) fn candidates(&self, name: &Name) -> Vec<Name> {
         let mut all = vec![name.clone()];
         let Some(first) = name.first().filter(|_| !name.global) else { return all };
         if let Some(target) = self.imports.get(&first) {
@@ -138,7 +138,7 @@ impl Workspace {
     }
 
     /// Forgets variables, flags and imports.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.variables.clear();
         self.flags.clear();
         self.imports.clear();

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// The loaded classes and where more can be found.
 #[derive(Default)]
-pub struct Classes {
+pub(crate) struct Classes {
     /// Trees of classes, and what is looked up in them.
     pub library: Library,
     /// Those that are nowhere.
@@ -110,12 +110,12 @@ impl Classes {
     }
 
     /// A number that changes with the classes.
-    pub fn revision(&self) -> u64 {
+    pub(crate) fn revision(&self) -> u64 {
         self.revision
     }
 
     /// Full names of the loaded functions and of everything else that could be called.
-    pub fn read_names(&self) -> Vec<Name> {
+    pub(crate) fn read_names(&self) -> Vec<Name> {
         self.library.known()
     }
 
@@ -145,13 +145,13 @@ impl Classes {
     }
 
     /// The files or folders of all classes at the top level.
-    pub fn packages(&self) -> BTreeMap<Ident, PathBuf> {
+    pub(crate) fn packages(&self) -> BTreeMap<Ident, PathBuf> {
         let own = |(name, path): (&Name, &PathBuf)| Some((name.first()?, path.clone()));
         self.files.iter().filter_map(own).collect()
     }
 
     /// The file or folder of a class at the top level.
-    pub fn file_of(&self, name: &Name) -> Option<&PathBuf> {
+    pub(crate) fn file_of(&self, name: &Name) -> Option<&PathBuf> {
         self.files.get(name)
     }
 
@@ -168,7 +168,7 @@ impl Classes {
     }
 
     /// Forgets all classes.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.invalidate();
         self.history.note("forget", "");
         self.library = Library::new();
@@ -192,12 +192,12 @@ impl Classes {
     }
 
     /// Whether there is a top-level class of this name.
-    pub fn defines(&self, name: Ident) -> bool {
+    pub(crate) fn defines(&self, name: Ident) -> bool {
         self.library.find(&Name::from(name)).is_some()
     }
 
     /// Whether a class of this name was looked for in vain.
-    pub fn is_missing(&self, name: Ident) -> bool {
+    pub(crate) fn is_missing(&self, name: Ident) -> bool {
         self.nowhere.contains(&name) || self.misnamed.contains_key(&name)
     }
 
@@ -212,7 +212,7 @@ impl Classes {
     }
 
     /// The copy of this name that was made for functions passed to a function.
-    pub fn copy(&self, name: &Name) -> Option<Arc<Function>> {
+    pub(crate) fn copy(&self, name: &Name) -> Option<Arc<Function>> {
         self.copies.get(name).cloned()
     }
 
@@ -234,7 +234,7 @@ impl Classes {
     }
 
     /// What a file defines instead of the class that it is named after.
-    pub(crate) fn misnamed_note(&self, name: &Name) -> Option<String> {
+    fn misnamed_note(&self, name: &Name) -> Option<String> {
         let requested = name.first()?;
         let path = self.misnamed.get(&requested)?;
         let own = self.files.iter().filter(|(_, file)| *file == path);
@@ -268,7 +268,7 @@ impl Classes {
     }
 
     /// The fault of a class that is not loaded and cannot be found.
-    pub fn unknown_class(&self, name: &Name) -> Fault {
+    pub(crate) fn unknown_class(&self, name: &Name) -> Fault {
         let requested = name.to_string();
         let known = self.read_names().iter().map(Name::to_string).collect::<Vec<_>>();
         let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));

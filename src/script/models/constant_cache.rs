@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 /// Types and constants by their names; `None` where there is none of that name.
 #[derive(Default)]
-pub struct ConstantCache {
+pub(crate) struct ConstantCache {
     /// Types.
     pub types: HashMap<Name, Option<FunctionComponent>>,
     /// Constants.
@@ -16,7 +16,7 @@ pub struct ConstantCache {
 
 impl ConstantCache {
     /// Forgets everything.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.types.clear();
         self.constants.clear();
     }

@@ -27,7 +27,7 @@ impl Session {
     }
 
     /// The files of a library that is going to be loaded.
-    pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
+    pub(super) fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
             self.world.reader_with_given(),
             self.classes.reads.clone(),

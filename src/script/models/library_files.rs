@@ -25,7 +25,7 @@ pub(crate) struct SourceFiles {
 }
 
 /// Warnings about the encodings of libraries.
-pub type Warnings = Arc<Mutex<Vec<Diagnostic>>>;
+pub(crate) type Warnings = Arc<Mutex<Vec<Diagnostic>>>;
 
 impl LibraryFiles for SourceFiles {
     fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
