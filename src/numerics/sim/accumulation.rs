@@ -80,7 +80,7 @@ impl Run<'_> {
             uncertainty,
             ahead: DIFFERENCE / self.fastest_rate(1.0 / span)?,
         };
-        let gap = self.problem.system.look_at_gap(&contact, others, self.t, self.y);
+        let gap = self.problem.system.within.look_at_gap(&contact, others, self.t, self.y);
         let (gap, rest) = gap.ok()?;
         if !gap.is_held() || uncertainty <= 0.0 || gap.height() > HEIGHT * uncertainty {
             return None;

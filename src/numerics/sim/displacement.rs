@@ -84,9 +84,9 @@ impl Run<'_> {
         let moved = (self.crossings.left[contact.crossing] - contact.value).abs();
         if moved > MOVED * contact.uncertainty {
             // The surface was moved by less than errors: back to it, without a flight.
-            system.lift(&contact, contact.gap(contact.value), self.t, self.y)?;
+            system.within.lift(&contact, contact.gap(contact.value), self.t, self.y)?;
         }
-        let (gap, rest) = system.look_at_gap(&contact, &others, self.t, self.y)?;
+        let (gap, rest) = system.within.look_at_gap(&contact, &others, self.t, self.y)?;
         if !gap.is_held() || gap.height() > HEIGHT * contact.uncertainty {
             return Ok(None);
         }
@@ -99,6 +99,6 @@ impl Run<'_> {
         if self.is_displaced(contact) {
             return Ok(());
         }
-        self.problem.system.lift(contact, LIFT * contact.uncertainty, self.t, self.y)
+        self.problem.system.within.lift(contact, LIFT * contact.uncertainty, self.t, self.y)
     }
 }

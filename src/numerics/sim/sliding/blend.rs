@@ -1,16 +1,9 @@
 //! The blended right-hand side and its observed variables.
 
 use super::slide::{Slide, nearest_mode, weight};
-use super::{Evaluated, Sliding};
+use super::within::{Evaluated, SystemWithin};
 
-impl Sliding<'_> {
-    /// Without surfaces there is but one mode, the one at hand.
-    pub(super) fn enter(&mut self, slide: &Slide, mode: usize) {
-        if !slide.surfaces.is_empty() {
-            self.inner.enter_mode(mode);
-        }
-    }
-
+impl SystemWithin<'_> {
     pub(super) fn blended_rhs(
         &mut self,
         slide: &Slide,
@@ -30,7 +23,7 @@ impl Sliding<'_> {
         out.fill(0.0);
         for mode in 0..slide.n_modes() {
             self.enter(slide, mode);
-            self.inner.rhs(t, &self.y, &mut self.out)?;
+            self.system.rhs(t, &self.y, &mut self.out)?;
             let weight = weight(mode, shares);
             let outer = (0..at).chain(at + k..y.len());
             for (row, value) in outer.zip(&self.out) {
@@ -43,7 +36,7 @@ impl Sliding<'_> {
     /// The equations of the shares.
     fn add_layers(&mut self, slide: &Slide, t: f64, y: &[f64], out: &mut [f64]) -> Evaluated {
         self.enter(slide, slide.nearest_mode(y));
-        self.inner.crossings(t, &self.y, &mut self.z)?;
+        self.system.crossings(t, &self.y, &mut self.z)?;
         let layers = slide.surfaces.iter().zip(slide.shares(y));
         for (residual, (surface, share)) in out[slide.at..].iter_mut().zip(layers) {
             let z = self.z[surface.crossing];
@@ -79,10 +72,10 @@ impl Sliding<'_> {
         out.fill(0.0);
         for mode in 0..slide.n_modes() {
             self.enter(slide, mode);
-            self.inner.observe(t, &self.y, &mut values)?;
+            self.system.observe(t, &self.y, &mut values)?;
             let weight = weight(mode, &shares);
             for (column, (out, value)) in out.iter_mut().zip(&values).enumerate() {
-                match self.inner.has_means(column) {
+                match self.system.has_means(column) {
                     true => *out += weight * value,
                     false if mode == nearest => *out = *value,
                     false => {}

@@ -10,8 +10,8 @@
 //! else                             it continues; the states are moved along d until w = 0
 //! ```
 
-use super::Sliding;
 use super::slide::Contact;
+use super::within::SystemWithin;
 use crate::sim::Failure;
 
 /// Length of the difference that gives the rate of w, relative to that of the one that gives w.
@@ -52,7 +52,7 @@ impl Contact {
     }
 }
 
-impl Sliding<'_> {
+impl SystemWithin<'_> {
     /// The rate of change of the crossing function of a contact without its force, at (t, y) of the
     /// system within, positive away from the surface.
     pub(in crate::sim) fn speed(
@@ -61,17 +61,17 @@ impl Sliding<'_> {
         t: f64,
         y: &[f64],
     ) -> Result<f64, Failure> {
-        let n = self.inner.n_differential();
+        let n = self.system.n_differential();
         let mut f = vec![0.0; y.len()];
-        let mut z = vec![0.0; self.inner.n_crossings()];
-        self.inner.rhs(t, y, &mut f)?;
+        let mut z = vec![0.0; self.system.n_crossings()];
+        self.system.rhs(t, y, &mut f)?;
         let mut moved = y.to_vec();
         let mut ends = [0.0; 2];
         for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
             let ahead = sign * contact.ahead;
             let points = moved.iter_mut().zip(y).zip(&f).take(n);
             points.for_each(|((moved, y), f)| *moved = y + ahead * f);
-            self.inner.crossings(t + ahead, &moved, &mut z)?;
+            self.system.crossings(t + ahead, &moved, &mut z)?;
             *end = z[contact.crossing];
         }
         Ok(contact.gap((ends[0] - ends[1]) / (2.0 * contact.ahead)))
@@ -85,8 +85,8 @@ impl Sliding<'_> {
         t: f64,
         y: &[f64],
     ) -> Result<f64, Failure> {
-        let mut z = vec![0.0; self.inner.n_crossings()];
-        self.inner.crossings(t, y, &mut z)?;
+        let mut z = vec![0.0; self.system.n_crossings()];
+        self.system.crossings(t, y, &mut z)?;
         let distance = contact.gap(z[contact.crossing] - contact.value);
         Ok(self.speed(contact, t, y)? + distance / contact.return_time)
     }
@@ -100,7 +100,7 @@ impl Sliding<'_> {
         t: f64,
         y: &[f64],
     ) -> Result<(Gap, Vec<f64>), Failure> {
-        let n = self.inner.n_differential();
+        let n = self.system.n_differential();
         let speed = self.speed(contact, t, y)?;
         let mut rest = y.to_vec();
         contact.move_along(1.0, &mut rest);
@@ -108,7 +108,7 @@ impl Sliding<'_> {
         rest.copy_from_slice(y);
         contact.move_along(-speed / effect, &mut rest);
         let mut f = vec![0.0; y.len()];
-        self.inner.rhs(t, &rest, &mut f)?;
+        self.system.rhs(t, &rest, &mut f)?;
         others.iter().for_each(|other| other.move_along(other.force, &mut f));
         let ahead = SECOND_DIFFERENCE * contact.ahead;
         let mut moved = rest.clone();
@@ -127,15 +127,15 @@ impl Sliding<'_> {
         t: f64,
         y: &mut [f64],
     ) -> Result<(), Failure> {
-        let n = self.inner.n_differential();
-        let mut z = vec![0.0; self.inner.n_crossings()];
-        self.inner.crossings(t, y, &mut z)?;
+        let n = self.system.n_differential();
+        let mut z = vec![0.0; self.system.n_crossings()];
+        self.system.crossings(t, y, &mut z)?;
         let way = gap - contact.gap(z[contact.crossing]);
         let [mut before, mut after] = [vec![0.0; y.len()], vec![0.0; y.len()]];
         let mut moved = y.to_vec();
         contact.move_along(1.0, &mut moved);
-        self.inner.rhs(t, y, &mut before)?;
-        self.inner.rhs(t, &moved, &mut after)?;
+        self.system.rhs(t, y, &mut before)?;
+        self.system.rhs(t, &moved, &mut after)?;
         let effect = self.speed(contact, t, &moved)? - self.speed(contact, t, y)?;
         let directions = after.iter().zip(&before).take(n);
         for (y, (after, before)) in y.iter_mut().zip(directions) {

@@ -1,7 +1,7 @@
 //! The Jacobian of the blended right-hand side.
 
 use super::slide::{Contact, Slide, inner_place, weight, weight_by_share};
-use super::{Evaluated, Sliding};
+use super::within::{Evaluated, SystemWithin};
 use crate::sim::Failure;
 
 /// Increment of y for the derivatives of z, relative to y.
@@ -9,7 +9,7 @@ const INCREMENT: f64 = 1e-7;
 /// The same for the derivatives of rates, which are differences themselves.
 const SPEED_INCREMENT: f64 = 1e-5;
 
-impl Sliding<'_> {
+impl SystemWithin<'_> {
     pub(super) fn blended_jacobian(
         &mut self,
         slide: &Slide,
@@ -20,8 +20,8 @@ impl Sliding<'_> {
         values.fill(0.0);
         for mode in 0..slide.n_modes() {
             self.enter(slide, mode);
-            self.inner.jacobian(t, &self.y, &mut self.values)?;
-            self.inner.rhs(t, &self.y, &mut self.out)?;
+            self.system.jacobian(t, &self.y, &mut self.values)?;
+            self.system.rhs(t, &self.y, &mut self.out)?;
             self.add_mode(slide, mode, y, values);
         }
         self.jacobian_of_layers(slide, t, y, values)?;
@@ -55,7 +55,7 @@ impl Sliding<'_> {
         weight: f64,
         entries: &mut [f64],
     ) {
-        let known = &self.values[self.inner.pattern().column(inner)];
+        let known = &self.values[self.system.pattern().column(inner)];
         let rows = &slide.pattern.rows[slide.pattern.column(column)];
         let is_inner = |row: usize| inner_place(row, slide.at, slide.k()).is_some();
         let of_system = entries.iter_mut().zip(rows).filter(|(_, row)| is_inner(**row));
@@ -76,7 +76,7 @@ impl Sliding<'_> {
             return Ok(());
         }
         self.enter(slide, slide.nearest_mode(y));
-        self.inner.crossings(t, &self.y, &mut self.z)?;
+        self.system.crossings(t, &self.y, &mut self.z)?;
         for column in 0..y.len() {
             let entries = &mut values[slide.pattern.column(column)];
             let rows = &slide.pattern.rows[slide.pattern.column(column)];
@@ -101,7 +101,7 @@ impl Sliding<'_> {
         let kept = self.y[at];
         self.y[at] = kept + INCREMENT * kept.abs().max(slide.nominal[at]);
         let increment = self.y[at] - kept;
-        let moved = self.inner.crossings(t, &self.y, &mut self.z_moved);
+        let moved = self.system.crossings(t, &self.y, &mut self.z_moved);
         self.y[at] = kept;
         moved?;
         for (entry, surface) in entries.iter_mut().zip(&slide.surfaces) {

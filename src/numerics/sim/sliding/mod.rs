@@ -34,10 +34,12 @@ mod interface;
 mod jacobian;
 mod shares;
 mod slide;
+mod within;
 
 use self::bordered::bordered;
 use self::slide::{Slide, nearest_mode};
-use super::{DaeSystem, Failure};
+use self::within::SystemWithin;
+use super::DaeSystem;
 
 pub(super) use self::shares::{attract, balanced};
 pub(super) use self::slide::{Contact, Surface};
@@ -45,31 +47,15 @@ pub(super) use self::slide::{Contact, Surface};
 /// The most surfaces at once: every one doubles the number of fields.
 pub(crate) const MOST_SURFACES: usize = 5;
 
-type Evaluated = Result<(), Failure>;
-
 /// A system that may slide; otherwise it is the system within.
 pub(super) struct Sliding<'a> {
-    inner: &'a mut dyn DaeSystem,
+    pub(super) within: SystemWithin<'a>,
     slide: Option<Slide>,
-    /// y of the system within, and what it writes.
-    y: Vec<f64>,
-    out: Vec<f64>,
-    values: Vec<f64>,
-    z: Vec<f64>,
-    z_moved: Vec<f64>,
 }
 
 impl<'a> Sliding<'a> {
-    pub(super) fn new(inner: &'a mut dyn DaeSystem) -> Sliding<'a> {
-        Sliding {
-            inner,
-            slide: None,
-            y: Vec::new(),
-            out: Vec::new(),
-            values: Vec::new(),
-            z: Vec::new(),
-            z_moved: Vec::new(),
-        }
+    pub(super) fn new(system: &'a mut dyn DaeSystem) -> Sliding<'a> {
+        Sliding { within: SystemWithin::new(system), slide: None }
     }
 
     /// Whether it slides along a surface or rests at one.
@@ -90,8 +76,8 @@ impl<'a> Sliding<'a> {
 
     /// Position of the shares in y.
     pub(super) fn place_of_shares(&self) -> usize {
-        let inner = &self.inner;
-        inner.n_differential() + inner.n_algebraic() - inner.n_auxiliary()
+        let system = &self.within.system;
+        system.n_differential() + system.n_algebraic() - system.n_auxiliary()
     }
 
     /// Slides from here on; the modes of these surfaces are prepared. `nominal` are those of the y
@@ -105,12 +91,8 @@ impl<'a> Sliding<'a> {
     ) {
         let at = self.place_of_shares();
         let k = surfaces.len() + contacts.len();
-        self.y.resize(nominal.len(), 0.0);
-        self.out.resize(nominal.len(), 0.0);
-        self.values.resize(self.inner.pattern().rows.len(), 0.0);
-        self.z.resize(self.inner.n_crossings(), 0.0);
-        self.z_moved.resize(self.inner.n_crossings(), 0.0);
-        let pattern = bordered(self.inner.pattern(), at, k);
+        self.within.resize(nominal.len());
+        let pattern = bordered(self.within.system.pattern(), at, k);
         let nominal = nominal.to_vec();
         self.slide = Some(Slide { surfaces, contacts, at, pattern, nominal, span });
     }
@@ -120,9 +102,9 @@ impl<'a> Sliding<'a> {
     /// contacts with their forces.
     pub(super) fn end(&mut self, t: f64, y: &mut Vec<f64>) -> (Vec<usize>, Vec<Contact>) {
         let Some(mut slide) = self.slide.take() else { return Default::default() };
-        slide.unwrap(y, &mut self.y);
-        let shares = self.exact_shares(&slide, t, y);
-        self.enter(&slide, nearest_mode(&shares));
+        slide.unwrap(y, &mut self.within.y);
+        let shares = self.within.exact_shares(&slide, t, y);
+        self.within.enter(&slide, nearest_mode(&shares));
         let forces = slide.forces(y).to_vec();
         for (contact, force) in slide.contacts.iter_mut().zip(forces) {
             contact.force = force;

@@ -9,8 +9,8 @@
 //! by Newton's method. What the integrator holds of the shares is as exact as its differences of y
 //! are, divided by its step; these are as exact as y, and so is the time at which one leaves 0 … 1.
 
-use super::Sliding;
 use super::slide::{Slide, weight, weight_by_share};
+use super::within::SystemWithin;
 use crate::sim::DenseLu;
 
 /// Iterations for the shares; where one surface is concerned or the effects add up, one is enough.
@@ -72,7 +72,7 @@ pub(in crate::sim) fn attract(rates: &[f64], shares: &[f64], widths: &[f64]) -> 
     schur.is_some_and(|schur| schur.complex_eigenvalues().iter().all(|value| value.re < 0.0))
 }
 
-impl Sliding<'_> {
+impl SystemWithin<'_> {
     /// The shares at (t, y within), or those that the integrator holds where the rates at hand do
     /// not tell them: what keeps the solution on a surface may go through algebraic unknowns.
     pub(super) fn exact_shares(&mut self, slide: &Slide, t: f64, y: &[f64]) -> Vec<f64> {
@@ -87,20 +87,20 @@ impl Sliding<'_> {
 
     /// The rates of change of the crossing functions of all surfaces, one mode after the other.
     fn rates_of_surfaces(&mut self, slide: &Slide, t: f64) -> Option<Vec<f64>> {
-        let n = self.inner.n_differential();
+        let n = self.system.n_differential();
         let k = slide.surfaces.len();
         let mut rates = Vec::with_capacity(slide.n_modes() * k);
         for mode in 0..slide.n_modes() {
             self.enter(slide, mode);
-            self.inner.rhs(t, &self.y, &mut self.out).ok()?;
+            self.system.rhs(t, &self.y, &mut self.out).ok()?;
             let magnitudes = self.y.iter().zip(&slide.nominal);
             let speeds = self.out.iter().zip(magnitudes).take(n);
             let relative = speeds.map(|(f, (y, nominal))| f.abs() / y.abs().max(*nominal));
             let ahead = DIFFERENCE / relative.fold(1.0 / slide.span, f64::max);
-            self.inner.crossings(t, &self.y, &mut self.z).ok()?;
+            self.system.crossings(t, &self.y, &mut self.z).ok()?;
             let kept = self.y.clone();
             self.y.iter_mut().zip(&self.out).take(n).for_each(|(y, f)| *y += ahead * f);
-            let moved = self.inner.crossings(t + ahead, &self.y, &mut self.z_moved);
+            let moved = self.system.crossings(t + ahead, &self.y, &mut self.z_moved);
             self.y = kept;
             moved.ok()?;
             let crossings = slide.surfaces.iter().map(|surface| surface.crossing);
