@@ -13,10 +13,10 @@
 //! Where nothing can hold the solution, the simulation ends with an error: there is none beyond.
 
 use super::displacement::HEIGHT;
-use super::simulator::Run;
+use super::run::Run;
 use super::sliding::Contact;
 use super::switches::ROW;
-use super::{Modes, SimErrorKind, Treatment};
+use super::{Modes, Residual, SimErrorKind, Treatment};
 
 /// Half the length of the difference that gives w, relative to the time in which y changes.
 const DIFFERENCE: f64 = 1e-4;
@@ -103,5 +103,14 @@ impl Run<'_> {
             true => Err(SimErrorKind::Accumulation),
             false => Ok(()),
         }
+    }
+
+    /// How fast y changes relative to its size, per second; at least so fast.
+    fn fastest_rate(&mut self, least: f64) -> Option<f64> {
+        let n = self.problem.system.n_differential();
+        let mut f = vec![0.0; self.y.len()];
+        self.problem.system.rhs(self.t, self.y, &mut f).ok()?;
+        let speed = |at: usize| f[at].abs() / self.y[at].abs().max(self.problem.nominal[at]);
+        Some((0..n).map(speed).fold(least, f64::max))
     }
 }

@@ -18,7 +18,7 @@
 //! follows than branches: a ball that leaves the ground falls as before, but the short steps of a restart
 //! are what its next impact is found in.
 
-use super::simulator::Run;
+use super::run::Run;
 use super::{Events, Modes, Residual, Sensitive, SimErrorKind};
 
 impl Run<'_> {

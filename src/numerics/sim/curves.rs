@@ -3,7 +3,7 @@
 
 use super::SimErrorKind;
 use super::integrators::Problem;
-use super::simulator::{After, Run};
+use super::run::{After, Run};
 use super::system::Events;
 
 /// So often, in points, a limit of time and a request to stop are looked for: looking at the clock costs

@@ -7,13 +7,14 @@
 //! than their uncertainty: the relation of a solution that rests has the value of the last impact,
 //! and only one that does not hold beside the surface can notice the next.
 
-use super::simulator::Run;
+use super::run::Run;
 use super::sliding::Contact;
 use super::{EventOutcome, Events, Failure, SimErrorKind};
 
 /// How far from a surface a solution may be that is on it, relative to the uncertainty: layers are as
 /// wide as that, and begin where it arrived.
 const DISPLACED: f64 = 2.0;
+
 /// A flight is over if it would be so high, relative to the uncertainty of z.
 pub(crate) const HEIGHT: f64 = 1.0;
 /// How far a solution that rests may be from where it began to without being moved, relative to the

@@ -2,7 +2,7 @@
 //! [`nonstiff`](super::integrators::nonstiff).
 
 use super::SimErrorKind;
-use super::simulator::{After, Run};
+use super::run::{After, Run};
 
 impl Run<'_> {
     /// Takes explicit steps from here on, if they suit.

@@ -6,7 +6,7 @@
 //! neither. From there to the end the integrator sees the states alone, with a full Jacobian by
 //! difference quotients.
 
-use super::simulator::{After, Run};
+use super::run::{After, Run};
 use super::{Residual, Sensitive, SimErrorKind};
 
 /// A full Jacobian of more states takes too long.

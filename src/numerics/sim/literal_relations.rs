@@ -1,7 +1,7 @@
 //! Events for relations inside `noEvent`, where they keep the simulation from getting on
 //! ([`progress`](super::progress)).
 
-use super::simulator::Run;
+use super::run::Run;
 use super::{Events, Modes, SimErrorKind};
 
 /// Attempts of steps whose lengths tell how far the end is.

@@ -50,6 +50,18 @@
 //! # Ok::<(), gapilib_numerics::sim::SimError>(())
 //! ```
 //!
+//! The methods of a run lie in layers; those of a file call none of the files above it:
+//!
+//! ```text
+//! simulator              the workspace of simulations
+//! simulation_loop        steps up to their ends or to events; curves, where there is nothing to integrate
+//! branch_switch          where no step can be made
+//! event_handling         what follows from an event; chattering, literal_relations
+//! displacement           which slides persist after an event; accumulation, which begin by impacts
+//! slides                 where slides begin and end; event_chain, continuation, explicit_steps, inner_loops
+//! run                    the state of a run, restarts; recording, event_location
+//! ```
+//!
 //! The systems are those of [`DaeSystem`]: semi-explicit, index 1. Not handled here: index reduction
 //! and the choice of states (done before).
 //!
@@ -58,6 +70,7 @@
 
 mod accumulation;
 mod before_event;
+mod branch_switch;
 mod chattering;
 mod continuation;
 mod curves;
@@ -65,6 +78,9 @@ mod displacement;
 mod effort;
 mod error;
 mod event;
+mod event_chain;
+mod event_handling;
+mod event_location;
 mod explicit_steps;
 mod inner_loops;
 mod instants;
@@ -72,13 +88,18 @@ mod integrators;
 mod linear;
 mod literal_relations;
 mod newton;
+mod nominals;
 mod norm;
 mod portable;
 #[cfg(test)]
 mod problems;
 mod progress;
+mod recording;
+mod run;
 mod settings;
+mod simulation_loop;
 mod simulator;
+mod slides;
 mod sliding;
 mod statistics;
 mod step_budget;
@@ -97,8 +118,9 @@ pub use integrators::{Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix, interpret};
 pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use portable::PortableSettings;
+pub use run::Ended;
 pub use settings::{OutputGrid, Settings, TimeBudget};
-pub use simulator::{End, Ended, Simulator, simulate};
+pub use simulator::{End, Simulator, simulate};
 pub use statistics::Statistics;
 pub use system::{
     DaeSystem, EventOutcome, Events, Linearity, Modes, Pattern, Residual, Sensitive, Side,

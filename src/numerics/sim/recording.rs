@@ -1,0 +1,113 @@
+//! What a simulation records: rows at output points and at events, and what systems with a memory are
+//! shown.
+
+use super::run::Run;
+use super::{Events, Failure, Residual, Settings, SimErrorKind};
+use std::sync::atomic::Ordering;
+
+/// Points of every step that a system with a memory is shown.
+const POINTS_REMEMBERED: u32 = 4;
+/// Halvings of a step within which an assertion has failed: to a millionth of a millionth of it.
+const ASSERTION_TRIALS: u32 = 40;
+
+/// The output points of a run.
+pub(crate) struct OutputPoints {
+    /// The next output point and its number.
+    pub(super) next_output: Option<f64>,
+    pub(super) output_number: usize,
+    /// Whether a step ends at every output point: nothing is interpolated.
+    pub(super) ends_at_points: bool,
+}
+
+impl OutputPoints {
+    pub(super) fn new(settings: &Settings, ends_at_points: bool) -> OutputPoints {
+        let next_output = settings.output.point(settings.start, settings.stop, 0);
+        OutputPoints { next_output, output_number: 0, ends_at_points }
+    }
+}
+
+impl Run<'_> {
+    /// Records the output points before `end`; y is y(`end`) afterwards as before.
+    pub(super) fn record_before(&mut self, end: f64) -> Result<(), SimErrorKind> {
+        let mut moved = false;
+        while let Some(point) = self.outputs.next_output.filter(|point| *point < end) {
+            self.integrator.interpolate(point, self.y);
+            self.t = point;
+            self.record()?;
+            self.advance_output();
+            moved = true;
+        }
+        if moved {
+            self.integrator.interpolate(end, self.y);
+        }
+        Ok(())
+    }
+
+    /// Shows the part of the step from `begin` to `end` to a system that remembers; y is y(`end`)
+    /// before and afterwards.
+    pub(super) fn remember(&mut self, begin: f64, end: f64) -> Result<(), SimErrorKind> {
+        if !self.problem.system.remembers() {
+            return Ok(());
+        }
+        for point in 1..=POINTS_REMEMBERED {
+            let share = f64::from(point) / f64::from(POINTS_REMEMBERED);
+            let t = if point == POINTS_REMEMBERED { end } else { begin + share * (end - begin) };
+            self.integrator.interpolate(t, self.y);
+            self.remember_now(t)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn remember_now(&mut self, t: f64) -> Result<(), SimErrorKind> {
+        self.problem.system.remember(t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    pub(super) fn check(&mut self) -> Result<(), SimErrorKind> {
+        self.problem.system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    /// Checks the end of a step that began at `begin`. An assertion that has failed within the step
+    /// fails at the time when it began to, and there are no rows after that.
+    pub(crate) fn check_step(&mut self, begin: f64) -> Result<(), SimErrorKind> {
+        let Err(mut failed) = self.check() else { return Ok(()) };
+        let is_assertion = |kind: &SimErrorKind| {
+            matches!(kind, SimErrorKind::Evaluation(Failure::Assertion { .. }))
+        };
+        let mut holds = begin;
+        for _ in 0..ASSERTION_TRIALS {
+            let middle = 0.5 * (holds + self.t);
+            if !is_assertion(&failed) || middle <= holds || middle >= self.t {
+                break;
+            }
+            self.integrator.interpolate(middle, self.y);
+            match self.problem.system.check(middle, self.y).map_err(SimErrorKind::Evaluation) {
+                Err(kind) if is_assertion(&kind) => (self.t, failed) = (middle, kind),
+                _ => holds = middle,
+            }
+        }
+        self.out.end_at(self.t);
+        Err(failed)
+    }
+
+    /// The next output point.
+    pub(crate) fn next_output(&self) -> Option<f64> {
+        self.outputs.next_output
+    }
+
+    pub(crate) fn advance_output(&mut self) {
+        let settings = self.problem.settings;
+        self.outputs.output_number += 1;
+        self.outputs.next_output =
+            settings.output.point(settings.start, settings.stop, self.outputs.output_number);
+    }
+
+    pub fn record(&mut self) -> Result<(), SimErrorKind> {
+        let observed = self.problem.system.observe(self.t, self.y, self.observed);
+        observed.map_err(|failure: Failure| SimErrorKind::Evaluation(failure))?;
+        self.out.push(self.t, self.observed);
+        if let Some(reached) = &self.problem.settings.reached {
+            reached.store(self.t.to_bits(), Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
