@@ -37,11 +37,11 @@ impl Run<'_> {
     fn solve_again(&mut self) -> Option<After> {
         let span = self.problem.settings.stop - self.problem.settings.start;
         if self.problem.system.n_algebraic() == 0
-            || self.t - self.jumps.last_solved <= LEAPS[0] * span
+            || self.t - self.branch_switches.last_solved <= LEAPS[0] * span
         {
             return None;
         }
-        self.jumps.last_solved = self.t;
+        self.branch_switches.last_solved = self.t;
         let before = self.y.to_vec();
         self.problem.system.crossed(None, span);
         let outcome = self.whole_event(self.t);
@@ -60,7 +60,7 @@ impl Run<'_> {
     /// branch just past it, to which an event leads.
     fn switch_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let span = self.problem.settings.stop - self.problem.settings.start;
-        if self.t - self.jumps.last_jump <= FARTHER * LEAPS[0] * span {
+        if self.t - self.branch_switches.last_jump <= FARTHER * LEAPS[0] * span {
             return Err(kind);
         }
         let (begin, before) = (self.t, self.y.to_vec());
@@ -70,7 +70,7 @@ impl Run<'_> {
                 break;
             }
             self.move_along(&before, &derivatives, ahead - begin);
-            self.jumps.last_jump = ahead;
+            self.branch_switches.last_jump = ahead;
             self.problem.statistics.state_events += 1;
             let after = self.handle_event(ahead, false).map_err(|_| kind)?;
             if self.has_jumped(&before) {
@@ -91,7 +91,7 @@ impl Run<'_> {
     fn leave_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
-        let distance = self.t - self.jumps.last_jump;
+        let distance = self.t - self.branch_switches.last_jump;
         if distance <= 0.0 {
             return Err(kind);
         }
@@ -105,7 +105,7 @@ impl Run<'_> {
             if self.t > settings.stop {
                 break;
             }
-            self.jumps.last_jump = self.t;
+            self.branch_switches.last_jump = self.t;
             self.move_along(&before, &derivatives, ahead);
             self.problem.system.crossed(None, span);
             let Ok(outcome) = self.whole_event(self.t) else { continue };

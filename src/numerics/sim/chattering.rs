@@ -120,7 +120,7 @@ impl Run<'_> {
             return Ok(true);
         }
         let (rows, switched) = (&self.watch.rows, &self.crossings.switched);
-        let is_rush = self.has_rush_of_events();
+        let is_rush = self.rush.is_rush();
         if !is_rush && !switched.iter().any(|at| rows[*at].is_due()) {
             return Ok(false);
         }

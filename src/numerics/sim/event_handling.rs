@@ -13,7 +13,9 @@ impl Run<'_> {
         by_sign_change: bool,
     ) -> Result<After, SimErrorKind> {
         self.t = t;
-        self.watch_for_chattering()?;
+        let settings = self.problem.settings;
+        let span = settings.stop - settings.start;
+        self.rush.note(t, span)?;
         match self.record() {
             // Located past the zero of a root, where the branch before the event has no value.
             Err(SimErrorKind::Evaluation(Failure::Domain { .. })) if by_sign_change => {}
@@ -25,7 +27,6 @@ impl Run<'_> {
         let was_constrained = self.problem.system.is_constrained();
         let (surfaces, contacts) = self.end_slide();
         let crossing = if by_sign_change { self.crossings.last() } else { None };
-        let span = self.problem.settings.stop - self.problem.settings.start;
         self.problem.system.crossed(crossing, span);
         let mut outcome = self.event_with_contacts(&contacts)?;
         if by_sign_change {
@@ -34,7 +35,7 @@ impl Run<'_> {
         if was_constrained && outcome != EventOutcome::Terminate {
             outcome = self.continue_after_event(surfaces, contacts)?;
         }
-        while self.outputs.next_output.is_some_and(|point| point <= t) {
+        while self.outputs.next().is_some_and(|point| point <= t) {
             self.advance_output();
         }
         match outcome {

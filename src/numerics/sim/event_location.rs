@@ -61,10 +61,8 @@ impl Run<'_> {
         if share <= part {
             return end;
         }
-        let numbers = self.outputs.output_number..;
-        let mut points =
-            numbers.map_while(|n| settings.output.point(settings.start, settings.stop, n));
-        let point = points.find(|point| *point > part).unwrap_or(end);
+        let mut following = self.outputs.following(settings);
+        let point = following.find(|point| *point > part).unwrap_or(end);
         share.min(point).min(end)
     }
 }

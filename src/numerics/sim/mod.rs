@@ -81,6 +81,7 @@ mod event;
 mod event_chain;
 mod event_handling;
 mod event_location;
+mod event_rush;
 mod explicit_steps;
 mod inner_loops;
 mod instants;
@@ -90,6 +91,7 @@ mod literal_relations;
 mod newton;
 mod nominals;
 mod norm;
+mod output_points;
 mod portable;
 #[cfg(test)]
 mod problems;

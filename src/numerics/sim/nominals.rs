@@ -1,21 +1,35 @@
 //! Nominal values of y.
 
+use super::DaeSystem;
+use super::norm::nominal_share;
 use super::sliding::MOST_SURFACES;
 use std::cell::OnceCell;
 
 /// Nominal values of y, without and with shares of surfaces.
 #[derive(Default)]
 pub(crate) struct Nominals {
-    pub(super) plain: Vec<f64>,
+    plain: Vec<f64>,
     /// Those of the states alone, once loops are solved inside.
-    pub(super) states: OnceCell<Vec<f64>>,
+    states: OnceCell<Vec<f64>>,
     /// For both.
-    pub(super) with_shares: [[OnceCell<Vec<f64>>; MOST_SURFACES]; 2],
+    with_shares: [[OnceCell<Vec<f64>>; MOST_SURFACES]; 2],
     /// That of a share.
-    pub(super) share: f64,
+    share: f64,
 }
 
 impl Nominals {
+    /// A simulation with n unknowns begins.
+    pub(super) fn begin(&mut self, system: &dyn DaeSystem, n: usize, tolerance: f64) {
+        self.plain.resize(n, 1.0);
+        system.nominal(&mut self.plain);
+        for nominal in self.plain.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
+            *nominal = 1.0;
+        }
+        self.share = nominal_share(tolerance);
+        self.states.take();
+        self.with_shares.iter_mut().flatten().for_each(|with| drop(with.take()));
+    }
+
     pub fn plain(&self) -> &[f64] {
         self.states.get().unwrap_or(&self.plain)
     }

@@ -2,7 +2,7 @@
 //! shown.
 
 use super::run::Run;
-use super::{Events, Failure, Residual, Settings, SimErrorKind};
+use super::{Events, Failure, Residual, SimErrorKind};
 use std::sync::atomic::Ordering;
 
 /// Points of every step that a system with a memory is shown.
@@ -10,27 +10,11 @@ const POINTS_REMEMBERED: u32 = 4;
 /// Halvings of a step within which an assertion has failed: to a millionth of a millionth of it.
 const ASSERTION_TRIALS: u32 = 40;
 
-/// The output points of a run.
-pub(crate) struct OutputPoints {
-    /// The next output point and its number.
-    pub(super) next_output: Option<f64>,
-    pub(super) output_number: usize,
-    /// Whether a step ends at every output point: nothing is interpolated.
-    pub(super) ends_at_points: bool,
-}
-
-impl OutputPoints {
-    pub(super) fn new(settings: &Settings, ends_at_points: bool) -> OutputPoints {
-        let next_output = settings.output.point(settings.start, settings.stop, 0);
-        OutputPoints { next_output, output_number: 0, ends_at_points }
-    }
-}
-
 impl Run<'_> {
     /// Records the output points before `end`; y is y(`end`) afterwards as before.
     pub(super) fn record_before(&mut self, end: f64) -> Result<(), SimErrorKind> {
         let mut moved = false;
-        while let Some(point) = self.outputs.next_output.filter(|point| *point < end) {
+        while let Some(point) = self.outputs.next().filter(|point| *point < end) {
             self.integrator.interpolate(point, self.y);
             self.t = point;
             self.record()?;
@@ -89,16 +73,8 @@ impl Run<'_> {
         Err(failed)
     }
 
-    /// The next output point.
-    pub(crate) fn next_output(&self) -> Option<f64> {
-        self.outputs.next_output
-    }
-
     pub(crate) fn advance_output(&mut self) {
-        let settings = self.problem.settings;
-        self.outputs.output_number += 1;
-        self.outputs.next_output =
-            settings.output.point(settings.start, settings.stop, self.outputs.output_number);
+        self.outputs.advance(self.problem.settings);
     }
 
     pub fn record(&mut self) -> Result<(), SimErrorKind> {

@@ -2,18 +2,14 @@
 
 use super::before_event::BeforeEvent;
 use super::event::CrossingSearch;
+use super::event_rush::EventRush;
 use super::integrators::nonstiff::{Distance, Nonstiff, Patience};
 use super::integrators::{Integrator, Problem};
 use super::nominals::Nominals;
+use super::output_points::OutputPoints;
 use super::progress::Progress;
-use super::recording::OutputPoints;
 use super::switches::Watch;
 use super::{Effort, SimErrorKind, Trajectory};
-
-/// So many events in a row within the time below are chattering.
-const MOST_EVENTS_AT_ONCE: u32 = 200;
-/// Distance of events that count as one place in time, relative to the simulated interval.
-const AT_ONCE: f64 = 1e-10;
 
 /// Whether the simulation continues after an event.
 #[derive(PartialEq)]
@@ -63,28 +59,23 @@ pub struct Run<'a> {
     pub(super) out: &'a mut Trajectory,
     pub(super) t: f64,
     pub(super) outputs: OutputPoints,
-    pub(super) jumps: Jumps,
+    pub(super) rush: EventRush,
+    pub(super) branch_switches: BranchSwitches,
     pub(super) progress: Progress,
     /// Whether it continues another one.
     pub(super) is_resumed: bool,
 }
 
-/// When events and jumps were the last time.
-pub(super) struct Jumps {
-    last_event: f64,
+/// When another branch was tried the last time.
+pub(super) struct BranchSwitches {
     pub(super) last_jump: f64,
     /// When algebraic unknowns were solved for because no step could be made.
     pub(super) last_solved: f64,
-    events_at_once: u32,
 }
 
-impl Jumps {
-    pub(super) const NONE: Jumps = Jumps {
-        last_event: f64::NEG_INFINITY,
-        last_jump: f64::NEG_INFINITY,
-        last_solved: f64::NEG_INFINITY,
-        events_at_once: 0,
-    };
+impl BranchSwitches {
+    pub(super) const NONE: BranchSwitches =
+        BranchSwitches { last_jump: f64::NEG_INFINITY, last_solved: f64::NEG_INFINITY };
 }
 
 impl Run<'_> {
@@ -100,21 +91,5 @@ impl Run<'_> {
 
     pub(crate) fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
-    }
-
-    /// Whether events follow each other without time to pass: near the end of what is allowed.
-    pub(crate) fn has_rush_of_events(&self) -> bool {
-        self.jumps.events_at_once > MOST_EVENTS_AT_ONCE / 2
-    }
-
-    pub(super) fn watch_for_chattering(&mut self) -> Result<(), SimErrorKind> {
-        let settings = self.problem.settings;
-        let near = self.t - self.jumps.last_event <= AT_ONCE * (settings.stop - settings.start);
-        self.jumps.events_at_once = if near { self.jumps.events_at_once + 1 } else { 0 };
-        self.jumps.last_event = self.t;
-        if self.jumps.events_at_once > MOST_EVENTS_AT_ONCE {
-            return Err(SimErrorKind::Chattering);
-        }
-        Ok(())
     }
 }

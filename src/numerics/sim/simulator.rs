@@ -2,13 +2,13 @@
 
 use super::before_event::BeforeEvent;
 use super::event::CrossingSearch;
+use super::event_rush::EventRush;
 use super::integrators::nonstiff::{self, Nonstiff};
 use super::integrators::{Exact, Integrator, Problem, WithoutUnknowns, bdf};
 use super::nominals::Nominals;
-use super::norm::nominal_share;
+use super::output_points::OutputPoints;
 use super::progress::Progress;
-use super::recording::OutputPoints;
-use super::run::{Ended, Jumps, Run};
+use super::run::{BranchSwitches, Ended, Run};
 use super::sliding::Sliding;
 use super::switches::Watch;
 use super::{DaeSystem, Effort, Settings, SimError, SimErrorKind, Statistics, Trajectory};
@@ -154,7 +154,8 @@ impl Simulator {
             out,
             t: settings.start,
             outputs: OutputPoints::new(settings, n == 0 || linearity.is_some()),
-            jumps: Jumps::NONE,
+            rush: EventRush::NONE,
+            branch_switches: BranchSwitches::NONE,
             progress: Progress::default(),
             is_resumed: from.is_some(),
         };
@@ -187,7 +188,7 @@ impl Simulator {
         if let Some(y) = from {
             self.y.copy_from_slice(y);
         }
-        self.set_nominals(system, settings.tolerance);
+        self.nominals.begin(system, n, settings.tolerance);
         out.reset(system.n_observed());
         self.effort = Effort::default();
         if settings.counts_effort {
@@ -197,23 +198,11 @@ impl Simulator {
     }
 
     fn resize(&mut self, system: &dyn DaeSystem, n: usize) {
-        self.nominals.plain.resize(n, 1.0);
         self.y.resize(n, 0.0);
         self.observed.resize(system.n_observed(), 0.0);
         self.crossings.resize(system.n_crossings());
         self.watch.resize(system.n_crossings());
         self.before_event.resize(system.n_crossings());
-    }
-
-    fn set_nominals(&mut self, system: &dyn DaeSystem, tolerance: f64) {
-        let nominals = &mut self.nominals;
-        system.nominal(&mut nominals.plain);
-        for nominal in nominals.plain.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
-            *nominal = 1.0;
-        }
-        nominals.share = nominal_share(tolerance);
-        nominals.states.take();
-        nominals.with_shares.iter_mut().flatten().for_each(|with| drop(with.take()));
     }
 }
 
