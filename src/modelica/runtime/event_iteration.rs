@@ -254,7 +254,7 @@ impl System {
 
     /// Solves once and updates relations; what changed, if anything.
     fn pass(&mut self, t: f64, stage: Stage, change: Change) -> Result<Option<Moved>, Failure> {
-        self.note_iterate();
+        self.events.note_iterate(&self.program, &self.registers);
         let is_known = stage == Stage::Event && self.take_noted_solution();
         let solved = if is_known { Ok(()) } else { self.solve(stage) };
         if let Err(failure) = solved {
@@ -264,7 +264,7 @@ impl System {
                 false => Err(self.refine(failure)),
             };
         }
-        let lag = self.changed_iterate();
+        let lag = self.events.changed_iterate(&self.program, &self.registers);
         self.events.unstable = lag.unwrap_or(self.events.unstable);
         Ok(match (self.update_relations(t, change), lag) {
             (true, _) => Some(Moved::Relation),
@@ -338,22 +338,6 @@ impl System {
         }
         self.relations.is_lenient = false;
         rests
-    }
-
-    /// Keeps the values of the variables of discrete loops.
-    pub(super) fn note_iterate(&mut self) {
-        for (slot, variable) in
-            self.events.previous_iterate.iter_mut().zip(&self.program.events.iterated)
-        {
-            *slot = self.registers[variable.0 as usize];
-        }
-    }
-
-    /// One of them that has another value now.
-    pub(super) fn changed_iterate(&self) -> Option<u32> {
-        let mut previous = self.events.previous_iterate.iter().zip(&self.program.events.iterated);
-        let moved = previous.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
-        moved.map(|(_, variable)| variable.0)
     }
 
     /// Checks the assertions of when-clauses; whether one of them ends the simulation.

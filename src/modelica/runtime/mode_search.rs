@@ -124,11 +124,11 @@ impl System {
     /// inconsistent.
     fn holds(&mut self, t: f64, stage: Stage) -> bool {
         for _ in 0..PASSES {
-            self.note_iterate();
+            self.events.note_iterate(&self.program, &self.registers);
             if self.solve(stage).is_err() {
                 return false;
             }
-            if self.changed_iterate().is_none() {
+            if self.events.changed_iterate(&self.program, &self.registers).is_none() {
                 return !self.note_inconsistent(t) && !self.update_roundings(t);
             }
         }

@@ -7,7 +7,7 @@ use super::system::System;
 use crate::codegen::code::Outputs;
 use crate::codegen::instruction::Register;
 use crate::codegen::sensitivity::SensitivityCode;
-use crate::sim::{EventOutcome, Failure, Residual};
+use crate::sim::{EventOutcome, Failure};
 use std::sync::Arc;
 
 /// An event whose time moves by more than so many lengths of the simulation when a parameter changes
@@ -263,9 +263,14 @@ impl System {
         run(&code.algebraic, &mut self.registers)
     }
 
+    /// Whether there are derivatives to carry.
+    pub(super) fn has_directions(&self) -> bool {
+        self.sensitivity.as_ref().is_some_and(|own| own.code.n_directions() > 0)
+    }
+
     /// Number of unknowns that the integrator holds.
     fn n_held(&self) -> usize {
-        self.n_differential() + self.n_algebraic()
+        self.program.sorted.states.len() + self.n_held_iteration()
     }
 
     /// Magnitudes of the parameters, positive.

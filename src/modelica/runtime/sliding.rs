@@ -50,9 +50,9 @@ impl System {
             return Ok(true);
         }
         for _ in 0..PASSES {
-            self.note_iterate();
+            self.events.note_iterate(&self.program, &self.registers);
             self.solve(Stage::Event)?;
-            if self.changed_iterate().is_none() {
+            if self.events.changed_iterate(&self.program, &self.registers).is_none() {
                 return Ok(true);
             }
         }

@@ -183,6 +183,20 @@ impl EventState {
             unstable: 0,
         }
     }
+
+    /// Keeps the values of the variables of discrete loops.
+    pub(super) fn note_iterate(&mut self, program: &Program, registers: &[f64]) {
+        for (slot, variable) in self.previous_iterate.iter_mut().zip(&program.events.iterated) {
+            *slot = registers[variable.0 as usize];
+        }
+    }
+
+    /// One of them that has another value now.
+    pub(super) fn changed_iterate(&self, program: &Program, registers: &[f64]) -> Option<u32> {
+        let mut previous = self.previous_iterate.iter().zip(&program.events.iterated);
+        let moved = previous.find(|(old, variable)| **old != registers[variable.0 as usize]);
+        moved.map(|(_, variable)| variable.0)
+    }
 }
 
 /// What is observed.

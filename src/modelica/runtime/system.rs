@@ -180,6 +180,11 @@ impl System {
         }
     }
 
+    /// Number of iteration variables that the integrator holds.
+    pub(super) fn n_held_iteration(&self) -> usize {
+        if self.loops.solves_loops { 0 } else { self.program.continuous.iteration.len() }
+    }
+
     /// Whether loops are solved inside, and there are some.
     fn has_inner_loops(&self) -> bool {
         self.loops.solves_loops && !self.program.continuous.iteration.is_empty()
@@ -470,7 +475,7 @@ impl Residual for System {
     }
 
     fn n_algebraic(&self) -> usize {
-        if self.loops.solves_loops { 0 } else { self.program.continuous.iteration.len() }
+        self.n_held_iteration()
     }
 
     fn n_auxiliary(&self) -> usize {
