@@ -14,14 +14,14 @@
 //! them false, as an event of its own if the model shows them.
 
 use super::execution::run;
-use super::instants::{AT_ONCE, Change, Clock, Stage, either};
+use super::instants::{Change, Clock, Stage, either};
 use super::system::System;
 use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
 
 /// Rounds of an event iteration after which recurring values are searched for.
-const MAX_ROUNDS: usize = 100;
+pub(super) const MAX_ROUNDS: usize = 100;
 /// Most rounds, however new the values are: a counter that counts itself never has the same again.
 const MOST_ROUNDS: usize = 10_000;
 /// Passes of a round after which recurring values end it.
@@ -92,44 +92,6 @@ impl System {
         }
         self.carry_to_previous();
         changed
-    }
-
-    /// Previous values and signals as they are before the initial system is solved.
-    pub(super) fn take_start_values_of_events(&mut self) {
-        let program = self.program.clone();
-        self.events.sampled = false;
-        for previous in &program.events.previous {
-            self.registers[previous.register as usize] = self.registers[previous.of.0 as usize];
-        }
-        for signal in program.events.samples.iter().chain(&program.events.terminal) {
-            self.registers[signal.0 as usize] = 0.0;
-        }
-        if let Some(initial) = program.events.initial {
-            self.registers[initial.0 as usize] = 1.0;
-        }
-    }
-
-    /// What follows the initial system: `pre(v) := v` and the events of the first instant.
-    pub(super) fn iterate_at_start(&mut self, t: f64) -> Result<(), Failure> {
-        let program = self.program.clone();
-        if let Some(initial) = program.events.initial {
-            self.registers[initial.0 as usize] = 0.0;
-        }
-        if program.events.is_empty() {
-            return Ok(());
-        }
-        self.update_previous();
-        while self.event(t)? == EventOutcome::Again {}
-        // What was before the start is what the events of the first instant lead to.
-        for _ in 0..MAX_ROUNDS {
-            let other = self.start_histories(t)?;
-            if !(self.start_transported(t)? | self.load_transported(t, true) | other) {
-                return Ok(());
-            }
-            self.load_delayed(t);
-            while self.event(t)? == EventOutcome::Again {}
-        }
-        Err(Failure::EventIteration { variable: self.events.unstable })
     }
 
     /// An event at `t`, the variables being those before it.
@@ -350,21 +312,6 @@ impl System {
         Ok(ends.outputs.iter().any(|end| self.registers[*end as usize] != 0.0))
     }
 
-    /// Checks the assertions of when-clauses, and at the start those of initial sections.
-    pub(super) fn assert_at_event(&mut self) -> Result<(), Failure> {
-        let program = self.program.clone();
-        let events = &program.events;
-        run(&events.assertions.tape, &mut self.registers)?;
-        let value = |register: &u32| self.registers[*register as usize];
-        match events.assertions.outputs.iter().position(|a| value(a) == 0.0) {
-            Some(failed) => {
-                let (assertion, values) = &events.asserted[failed];
-                Err(self.failed_assertion(*assertion, values))
-            }
-            None => Ok(()),
-        }
-    }
-
     /// Sets the states of the `reinit`s that are active; whether there are any.
     fn reinitialize(&mut self) -> Result<bool, Failure> {
         let program = self.program.clone();
@@ -384,55 +331,10 @@ impl System {
         Ok(any)
     }
 
-    /// Evaluates every rounding at the values of the variables; whether one changed.
-    pub(super) fn update_roundings(&mut self, t: f64) -> bool {
-        let program = self.program.clone();
-        let mut changed = false;
-        for (rounding, code) in program.events.roundings.iter().zip(&program.events.rounded) {
-            let value = match rounding.time {
-                Some((rate, rest)) => {
-                    let direction = if self.relations.is_at_start { 0.0 } else { rate };
-                    rounded_in_time(rate * t + self.registers[rest as usize], direction)
-                }
-                None => match code.tape.run(&mut self.registers) {
-                    Ok(()) => self.registers[code.outputs[0] as usize].floor(),
-                    Err(_) => continue,
-                },
-            };
-            let slot = &mut self.registers[rounding.register as usize];
-            if *slot != value {
-                changed = true;
-                self.events.unstable = rounding.register;
-            }
-            *slot = value;
-        }
-        changed
-    }
-
-    /// Whether what is rounded decreases in time and is whole at `t`.
-    pub(super) fn rounds_down_after(&self, t: f64) -> bool {
-        self.program.events.roundings.iter().any(|rounding| {
-            rounding.time.is_some_and(|(rate, rest)| {
-                let value = rate * t + self.registers[rest as usize];
-                rounded_in_time(value, rate) != rounded_in_time(value, 0.0)
-            })
-        })
-    }
-
     /// Times at which a rounding of time jumps or a sample is due next.
     pub(super) fn scheduled(&self) -> impl Iterator<Item = f64> {
         let samples = self.events.clocks.iter().map(Clock::time);
         self.jumps_of_roundings().flatten().chain(samples).filter(|time| time.is_finite())
-    }
-
-    /// For every rounding the time at which it jumps next, if it is one of time.
-    pub(super) fn jumps_of_roundings(&self) -> impl Iterator<Item = Option<f64>> {
-        self.program.events.roundings.iter().map(|rounding| {
-            let (factor, rest) = rounding.time?;
-            let value = self.registers[rounding.register as usize];
-            let next = if factor > 0.0 { value + 1.0 } else { value };
-            Some((next - self.registers[rest as usize]) / factor)
-        })
     }
 
     /// Values of all discrete variables and their previous ones, for an event at the end;
@@ -445,13 +347,4 @@ impl System {
         }
         outcome.map(|_| ())
     }
-}
-
-/// `floor`; at a jump the value that follows in the direction of the rate.
-fn rounded_in_time(value: f64, rate: f64) -> f64 {
-    let nearest = value.round();
-    if (value - nearest).abs() > AT_ONCE * value.abs().max(1.0) {
-        return value.floor();
-    }
-    if rate >= 0.0 { nearest } else { nearest - 1.0 }
 }

@@ -2,7 +2,7 @@
 
 use super::state::GivenStart;
 use super::system::System;
-use crate::sim::{Events, Failure};
+use crate::sim::Failure;
 
 impl System {
     /// Lets every simulation from now on begin with these values.
@@ -16,10 +16,10 @@ impl System {
         let Some(start) = self.given_start.take() else { return Ok(()) };
         // Conditions that become true here were true before: what they do is taken back.
         self.set_start(&start, y);
-        let mut done = self.handle_event(t, y);
+        let mut done = self.pass_event(t, y);
         if done.is_ok() {
             self.set_start(&start, y);
-            done = self.handle_event(t, y);
+            done = self.pass_event(t, y);
         }
         self.given_start = Some(start);
         done.map(|_| ())

@@ -1,6 +1,5 @@
 //! The exact Jacobian of chosen variables, as a model that is linearized needs them.
 
-use super::difference_quotients::quotient;
 use super::execution::read;
 use super::system::System;
 use crate::codegen::jacobian::differentiate_sequence;
@@ -88,34 +87,5 @@ impl System {
             dense[place] = value;
         }
         Ok(dense)
-    }
-}
-
-impl System {
-    /// The Jacobian of the right-hand side by difference quotients.
-    pub(super) fn difference_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        let n = y.len();
-        let (mut before, mut column) = (vec![0.0; n], vec![0.0; n]);
-        let (mut moved, mut nominal) = (y.to_vec(), vec![1.0; n]);
-        self.nominal(&mut nominal);
-        self.rhs(t, y, &mut before)?;
-        let pattern = self.pattern().clone();
-        for j in 0..n {
-            quotient(y[j], nominal[j], &before, &mut column, |x, out| {
-                moved[j] = x;
-                self.rhs(t, &moved, out)
-            })?;
-            moved[j] = y[j];
-            for at in pattern.column(j) {
-                values[at] = column[pattern.rows[at]];
-            }
-        }
-        self.load(t, y);
-        Ok(())
     }
 }

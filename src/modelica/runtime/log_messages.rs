@@ -1,16 +1,16 @@
 //! The log of a simulation: warnings, and messages that the model prints (MLS §8.3.7). Only systems
 //! with a listener keep it.
 
+use super::assertions::UNKNOWN;
 use super::execution::run;
 use super::simulation_log::{LogMessage, SimulationLog};
 use super::system::System;
 use crate::bytecode::Journal;
-use crate::codegen::code::{LogAssertion, Outputs};
+use crate::codegen::code::LogAssertion;
 use crate::codegen::errors::{ASSERTION_FAILED, DOMAIN_ERROR};
 use crate::diag::Diagnostic;
-use crate::lower::{Assertion, Level, StringPart, warning_of};
+use crate::lower::{Assertion, Level, warning_of};
 use crate::sim::{self, SimError, SimErrorKind};
-use crate::value::format::written;
 
 impl System {
     /// A parameter or constant that is zero and that an equation divides by.
@@ -115,12 +115,6 @@ impl System {
         Ok(())
     }
 
-    /// An assertion that does not hold, whose text is kept with its values as they are.
-    pub(super) fn failed_assertion(&mut self, assertion: u32, values: &Outputs) -> sim::Failure {
-        self.messages.failed_message = Some((assertion, self.message_of(assertion, values)));
-        sim::Failure::Assertion { assertion }
-    }
-
     /// What a failure says with the values in its text, where there are some, and with the variable
     /// that has none.
     pub(super) fn with_values(&self, said: Diagnostic, error: &SimError) -> Diagnostic {
@@ -164,29 +158,4 @@ impl System {
             None => said,
         }
     }
-
-    /// The text of an assertion with its values as they are; `…` for those that there are not.
-    fn message_of(&mut self, assertion: u32, values: &Outputs) -> String {
-        let program = self.program.clone();
-        let Some(assertion) = program.sorted().dae.assertion(assertion) else {
-            return String::new();
-        };
-        let are_known = run(&values.tape, &mut self.registers).is_ok();
-        let mut outputs = values.outputs.iter().map(|at| self.registers[*at as usize]);
-        let mut words = String::new();
-        for part in &assertion.parts {
-            let row: Vec<f64> = outputs.by_ref().take(part.scalars().len()).collect();
-            let text = match part {
-                StringPart::Text(known) => Some(known.clone()),
-                _ if !are_known => None,
-                StringPart::Numbered(_) => self.registers.calls.text(row[0]),
-                StringPart::Written(_, format) => written(&row, format.as_deref()).ok(),
-            };
-            words += text.as_deref().unwrap_or(UNKNOWN);
-        }
-        words
-    }
 }
-
-/// Stands for a value that there is not.
-const UNKNOWN: &str = "…";

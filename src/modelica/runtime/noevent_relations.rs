@@ -37,13 +37,6 @@ impl System {
         self.literal.plain = Some(Box::new(plain));
         Ok(true)
     }
-
-    /// Takes events of relations inside `noEvent` back: every simulation begins without.
-    pub(super) fn restore_program(&mut self) {
-        let Some(plain) = self.literal.plain.take() else { return };
-        let changed = std::mem::replace(self, *plain);
-        self.take_settings(changed);
-    }
 }
 
 impl System {
@@ -89,11 +82,5 @@ impl System {
             self.registers[register] = f64::from(u8::from(holds));
         }
         Ok(())
-    }
-
-    /// What was asked of a system since its simulation began.
-    fn take_settings(&mut self, changed: System) {
-        self.set = changed.set;
-        self.messages.log = changed.messages.log;
     }
 }

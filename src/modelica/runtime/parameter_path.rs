@@ -9,10 +9,9 @@
 //! that was set from the first step on. The start with the parameters of the model is solved once for
 //! all simulations: no result depends on which parameters came before.
 
-use super::singular_systems::loops_of;
+use super::initial_system::places;
 use super::state::SolvedStart;
 use super::system::System;
-use crate::codegen::program::Program;
 use crate::flatten::BaseType;
 use crate::sim::Failure;
 
@@ -20,13 +19,6 @@ use crate::sim::Failure;
 /// 20 m, walls of 60 W/K or 100 W/K and a burner of 60 W to 3 kW, where its author has 10 m, 80 W/K and
 /// 1.6 kW, needs no more than the first step, of the whole way.
 const SMALLEST_STEP: f64 = 1e-3;
-
-/// The registers that a start begins from: unknowns of loops, relations.
-pub(super) fn places(program: &Program) -> impl Iterator<Item = usize> + '_ {
-    let unknowns = loops_of(&program.initial_steps).flat_map(|torn| torn.unknowns.iter().copied());
-    let relations = program.switching.relations.iter().map(|relation| relation.register);
-    unknowns.chain(relations).map(|register| register as usize)
-}
 
 impl System {
     /// Whether parameters have other values than the model gives them.

@@ -5,6 +5,14 @@ use super::system::System;
 use crate::codegen::program::Program;
 
 impl System {
+    /// Whether the registers hold these bits.
+    pub(super) fn is_loaded(&self, t: f64, y: &[f64]) -> bool {
+        let is_held =
+            |register: usize, value: f64| self.registers[register].to_bits() == value.to_bits();
+        let mut unknowns = self.program.continuous.unknowns.iter().zip(y);
+        is_held(0, t) && unknowns.all(|(variable, value)| is_held(variable.0 as usize, *value))
+    }
+
     /// Keeps a solution for iteration variables that y holds: it is asked for where an event is located.
     /// Not where more than the unknowns and the relations decides it.
     pub(super) fn note_solution(&mut self, t: f64, y: &[f64]) {

@@ -12,7 +12,7 @@ use crate::sim::Failure;
 /// Relative difference of values that reading again may make.
 const ROUNDING: f64 = 1e-10;
 /// How often values are read again that depend on each other.
-const PASSES: usize = 50;
+pub(super) const PASSES: usize = 50;
 
 fn values(code: &Outputs, registers: &mut Memory) -> Result<Vec<f64>, Failure> {
     run(&code.tape, registers)?;
@@ -58,17 +58,6 @@ impl System {
             }
         }
         true
-    }
-
-    /// Solves for iteration variables until they agree with the values that depend on them.
-    pub(super) fn agree_with_transported(&mut self, t: f64) -> Result<(), Failure> {
-        for _ in 0..PASSES {
-            if !self.load_transported(t, false) {
-                return Ok(());
-            }
-            self.solve(super::instants::Stage::Continuous)?;
-        }
-        Ok(())
     }
 
     /// Starts the records with the values at `t`, all variables being known; whether one of them
