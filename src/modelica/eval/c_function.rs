@@ -114,12 +114,12 @@ fn declaration(function: &Function, clause: &External) -> Result<Declaration, Di
         arguments.push(self::argument(function, argument)?);
         objects.push(passed(function, argument).and_then(|(component, _)| object_class(component)));
     }
-    let made = clause.output.as_ref().and_then(|output| component(function, output.as_ident()?));
+    let made = clause.output.as_ref().and_then(|output| function.variable(output.as_ident()?));
     objects.push(made.and_then(object_class));
     let result = match &clause.output {
         None => None,
         Some(output) => {
-            let component = output.as_ident().and_then(|name| component(function, name));
+            let component = output.as_ident().and_then(|name| function.variable(name));
             let component = component.filter(|component| component.dims.is_empty());
             let scalar = component.and_then(|component| scalar(&component.value_type));
             let what = "returns what is not a number, a String or an external object";
@@ -169,11 +169,6 @@ pub fn destructor(constructor: &Function) -> Name {
     name
 }
 
-fn component(function: &Function, name: Ident) -> Option<&FunctionComponent> {
-    let mut all = function.inputs.iter().chain(&function.outputs).chain(&function.locals);
-    all.find(|component| component.name == name)
-}
-
 /// The component that an argument is, or a component of a record that is an input, and whether it is
 /// an input.
 pub(crate) fn passed<'f>(
@@ -185,7 +180,7 @@ pub(crate) fn passed<'f>(
         return None;
     }
     let (first, rest) = reference.parts.split_first()?;
-    let whole = component(function, first.name)?;
+    let whole = function.variable(first.name)?;
     let is_input = function.inputs.iter().any(|input| input.name == first.name);
     let member = |of: &'f FunctionComponent, name: Ident| match &of.value_type {
         ValueType::Record(_, fields) if is_input && of.dims.is_empty() => fields.get(&name),
@@ -200,7 +195,7 @@ const RECORDS: &str = "is passed a component of an array of records";
 /// Whether an argument begins with an array of records, or with an element of one.
 fn is_of_records(function: &Function, argument: &Expression) -> bool {
     let ExpressionKind::Reference(reference) = &argument.kind else { return false };
-    let whole = reference.parts.first().and_then(|first| component(function, first.name));
+    let whole = reference.parts.first().and_then(|first| function.variable(first.name));
     let is_array = |whole: &FunctionComponent| {
         !whole.dims.is_empty() && matches!(whole.value_type, ValueType::Record(..))
     };

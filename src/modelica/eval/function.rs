@@ -51,6 +51,12 @@ impl Function {
         ordered
     }
 
+    /// The input, output or protected variable of this name.
+    pub(crate) fn variable(&self, name: Ident) -> Option<&FunctionComponent> {
+        let mut all = self.inputs.iter().chain(&self.outputs).chain(&self.locals);
+        all.find(|component| component.name == name)
+    }
+
     /// Whether a call may give any arguments, which are not looked at: a built-in
     /// marked `annotation(variadic = true)`.
     pub(super) fn is_variadic(&self) -> bool {

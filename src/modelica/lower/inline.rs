@@ -14,9 +14,9 @@ use super::execution::Loops;
 use super::expressions::message_parts;
 use super::expressions::{
     Array, Binary, Branch, Choice, ConditionalValues, FunctionCalls, Lowered, Lowering, Operations,
-    StringOperations, TimeOperators, Unary, VariableReferences,
+    StringOperations, TimeOperators, Unary, VariableReferences, size_fault,
 };
-use super::function::{component_type, local_value};
+use super::function::{component_type, local_value, subscripts_of};
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
@@ -30,6 +30,7 @@ use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator};
 use crate::syntax::ast::{ComponentReference, Expression, ForIndex, Statement, Subscript};
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -180,79 +181,91 @@ impl Call<'_, '_> {
         target: &ComponentReference,
         value: Lowered<Expr>,
     ) -> Result<(), Diagnostic> {
-        let (last, path) = match target.parts.split_last() {
-            Some((last, path)) if path.iter().all(|part| part.subscripts.is_empty()) => {
-                (last, path)
-            }
-            _ => return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span)),
+        let mut names: Vec<Ident> = target.parts.iter().map(|part| part.name).collect();
+        let function = self.function.clone();
+        let subscripts = subscripts_of(&function, target)?;
+        let Some(place) = self.local(&names) else {
+            let error = fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name());
+            return Err(error.at(target.span));
         };
-        let names: Vec<Ident> = path.iter().chain([last]).map(|part| part.name).collect();
-        let unknown = || {
-            fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
-        };
-        let dims = match self.local(&names).ok_or_else(unknown)? {
-            Lowered::Array(array) => array.dims.clone(),
-            _ if !last.subscripts.is_empty() => {
-                return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span));
-            }
-            _ => Vec::new(),
-        };
-        let positions = self.positions(&dims, &last.subscripts, target.span)?;
-        let place = self.local(&names).ok_or_else(unknown)?;
-        let Some(positions) = positions else {
-            if !place.fits(&value) {
-                return Err(fault!(
-                    ARRAY_MISMATCH,
-                    "the value of `{}` has a different size",
-                    target.name()
-                )
-                .at(target.span));
-            }
-            *place = value;
-            return Ok(());
-        };
-        let (Lowered::Array(array), Lowered::Array(value)) = (place, value) else {
-            return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(target.span));
-        };
-        if positions.len() != value.elements.len() {
+        if !subscripts.is_empty() {
+            return self.assign_elements(&mut names, &subscripts, value, target.span);
+        }
+        if !place.fits(&value) {
             return Err(fault!(
                 ARRAY_MISMATCH,
-                "{} elements are assigned to {}",
-                value.elements.len(),
-                positions.len()
+                "the value of `{}` has a different size",
+                target.name()
             )
             .at(target.span));
         }
-        for (position, element) in positions.into_iter().zip(value.elements) {
-            array.elements[position] = element;
+        *place = value;
+        Ok(())
+    }
+
+    /// `names[subscripts] := value`, for each array of a record.
+    fn assign_elements(
+        &mut self,
+        names: &mut Vec<Ident>,
+        subscripts: &[Subscript],
+        value: Lowered<Expr>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let value = match value {
+            Lowered::Array(value) => value,
+            Lowered::Record(fields) => {
+                for (name, field) in fields {
+                    names.push(name);
+                    self.assign_elements(names, subscripts, field, span)?;
+                    names.pop();
+                }
+                return Ok(());
+            }
+            _ => return Err(fault!(NOT_SUPPORTED, "subscripts of a String").at(span)),
+        };
+        let Some(Lowered::Array(place)) = self.local(names) else {
+            return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(span));
+        };
+        let dims = place.dims.clone();
+        let (positions, chosen) = self.positions(&dims, subscripts, span)?;
+        if chosen != value.dims {
+            return Err(size_fault(&chosen, &value.dims).at(span));
+        }
+        if let Some(Lowered::Array(place)) = self.local(names) {
+            for (position, element) in positions.into_iter().zip(value.elements) {
+                place.elements[position] = element;
+            }
         }
         Ok(())
     }
 
-    /// Row-major positions that subscripts choose; `None` without subscripts.
+    /// Row-major positions that subscripts choose, and the sizes of what is chosen.
     fn positions(
         &mut self,
         dims: &[usize],
         subscripts: &[Subscript],
         span: Span,
-    ) -> Result<Option<Vec<usize>>, Diagnostic> {
-        if subscripts.is_empty() {
-            return Ok(None);
-        }
-        let mut positions = vec![0];
+    ) -> Result<(Vec<usize>, Vec<usize>), Diagnostic> {
+        let (mut positions, mut kept) = (vec![0], Vec::new());
         let mut choices = self.lowering().choices(dims, subscripts, span)?.into_iter();
         for size in dims {
             let chosen: Vec<usize> = match choices.next() {
-                Some(Choice::Known { positions, .. }) => positions,
+                Some(Choice::Known { positions, keeps }) => {
+                    kept.extend(keeps.then_some(positions.len()));
+                    positions
+                }
                 Some(Choice::Computed(_) | Choice::ComputedVector(_)) => {
                     return Err(subscript_unknown(span));
                 }
-                None => (0..*size).collect(),
+                None => {
+                    kept.push(*size);
+                    (0..*size).collect()
+                }
             };
             let step = |at: &usize| chosen.iter().map(|c| at * size + c).collect::<Vec<_>>();
             positions = positions.iter().flat_map(step).collect();
         }
-        Ok(Some(positions))
+        Ok((positions, kept))
     }
 
     fn local(&mut self, names: &[Ident]) -> Option<&mut Lowered<Expr>> {
@@ -511,6 +524,13 @@ impl VariableReferences for Call<'_, '_> {
 
     fn own_variable(&self, name: Ident) -> Option<&Lowered<Expr>> {
         self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
+    }
+
+    fn own_subscripts<'r>(
+        &self,
+        reference: &'r ComponentReference,
+    ) -> Result<Cow<'r, [Subscript]>, Diagnostic> {
+        subscripts_of(&self.function, reference)
     }
 
     fn value_type(&self, path: &str) -> Option<ValueType> {

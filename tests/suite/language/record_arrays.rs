@@ -1,5 +1,6 @@
 //! Functions that rearrange arrays of records in models (MLS §10.3.3, §10.3.5, §10.4.2).
 
+use crate::support::simulated::simulated;
 use gapilib::Session;
 use gapilib::internals::syntax::ast::ExpressionKind;
 use gapilib::world::MemoryWorld;
@@ -48,4 +49,109 @@ fn the_components_of_a_computed_record_share_its_value() {
         other => panic!("{other:?}"),
     };
     assert!(Arc::ptr_eq(&record("r.a"), &record("r.b")));
+}
+
+/// Subscripts of one part of `q[…].a[…].v[…]`, each of which has three elements, which of them it
+/// chooses, and whether the dimension stays; `k` is a variable with the value 2.
+const SUBSCRIPTS: [(&str, &[usize], bool); 6] = [
+    ("", &[0, 1, 2], true),
+    ("[2]", &[1], false),
+    ("[:]", &[0, 1, 2], true),
+    ("[{3, 1}]", &[2, 0], true),
+    ("[end]", &[2], false),
+    ("[k]", &[1], false),
+];
+
+/// A slice as it is written, the places of its elements among the 27 in order, and its sizes.
+struct Slice {
+    text: String,
+    places: Vec<usize>,
+    dims: Vec<usize>,
+}
+
+/// Each way to write a slice.
+fn slices() -> Vec<Slice> {
+    let mut all = Vec::new();
+    for outer in SUBSCRIPTS {
+        for inner in SUBSCRIPTS {
+            for last in SUBSCRIPTS {
+                let of_part = |h: usize, i: usize| last.1.iter().map(move |j| 9 * h + 3 * i + j);
+                let of_record = |h: &usize| inner.1.iter().flat_map(|i| of_part(*h, *i)).collect();
+                let places: Vec<Vec<usize>> = outer.1.iter().map(of_record).collect();
+                let parts = [outer, inner, last].into_iter().filter(|(.., stays)| *stays);
+                all.push(Slice {
+                    text: format!("q{}.a{}.v{}", outer.0, inner.0, last.0),
+                    places: places.concat(),
+                    dims: parts.map(|(_, chosen, _)| chosen.len()).collect(),
+                });
+            }
+        }
+    }
+    all
+}
+
+/// The numbers 1, 2, … as an array of these sizes.
+fn weights(dims: &[usize], next: &mut u32) -> String {
+    let Some((n, inner)) = dims.split_first() else {
+        *next += 1;
+        return format!("{next}.0");
+    };
+    let elements: Vec<String> = (0..*n).map(|_| weights(inner, next)).collect();
+    format!("{{{}}}", elements.join(", "))
+}
+
+/// The sum of values times 1, 2, …
+fn weighted(values: impl Iterator<Item = f64>) -> f64 {
+    values.zip(1..).map(|(value, weight)| value * f64::from(weight)).sum()
+}
+
+/// `v[:].x[2]` chooses in the vectors of the records, not among the records (MLS §10.5): what a
+/// function reads and assigns, inlined and compiled, with the places counted by hand.
+#[test]
+fn subscripts_of_slices_of_records_belong_to_their_parts() {
+    let initial = |place: usize| (place * place + 3) as f64;
+    let (mut functions, mut variables, mut expected) = (String::new(), String::new(), Vec::new());
+    let header =
+        "input Whole given[3]; output Real s; protected Whole q[3] = given; Integer k = 2;";
+    let all = weights(&[3, 3, 3], &mut 0);
+    for (at, Slice { text: slice, places, dims }) in slices().into_iter().enumerate() {
+        // What a `while` is in is compiled.
+        let compiled = "while k > 2 loop k := k - 1; end while;";
+        let own = weights(&dims, &mut 0);
+        for (name, statement) in [("i", ""), ("c", compiled)] {
+            functions += &format!(
+                "function r{name}{at} {header} algorithm {statement} \
+                 s := sum({{{slice} .* {own}}}); end r{name}{at};
+                 function a{name}{at} {header} algorithm {statement} {slice} := -2*{slice}; \
+                 s := sum(q.a.v .* {all}); end a{name}{at};\n"
+            );
+            for kind in ["r", "a"] {
+                variables += &format!("Real {kind}{name}{at} = {kind}{name}{at}(q);\n");
+                let value = |place: usize| match places.contains(&place) {
+                    true => -2.0 * initial(place),
+                    false => initial(place),
+                };
+                let sum = match kind {
+                    "r" => weighted(places.iter().map(|place| initial(*place))),
+                    _ => weighted((0..27).map(value)),
+                };
+                expected.push((format!("{kind}{name}{at}"), slice.clone(), sum));
+            }
+        }
+    }
+    let run = simulated(
+        &format!(
+            "package S record Part Real v[3]; end Part; record Whole Part a[3]; end Whole;
+             function made input Real x; output Whole q[3]; algorithm for h in 0:2 loop \
+             for i in 0:2 loop for j in 0:2 loop \
+             q[h + 1].a[i + 1].v[j + 1] := x*((9*h + 3*i + j)^2 + 3); \
+             end for; end for; end for; end made; {functions} end S;
+             model M import S.*; Whole q[3] = made(if time < 1 then 1 else 2); {variables} end M;"
+        ),
+        0.1,
+    );
+    for (variable, slice, sum) in expected {
+        let value = run.last(&variable);
+        assert!((value - sum).abs() < 1e-9 * sum.abs(), "{variable}, {slice}: {value}, not {sum}");
+    }
 }

@@ -43,21 +43,12 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Option<Lowered<T::Scalar>>, Diagnostic> {
         let Some((first, rest)) = reference.parts.split_first() else { return Ok(None) };
         let Some(mut own) = self.target.own_variable(first.name) else { return Ok(None) };
-        // Records are large: what is chosen by name alone is chosen before anything is copied.
-        let (mut subscripts, mut rest) = (&first.subscripts, rest.iter());
-        while subscripts.is_empty()
-            && let Some(part) = rest.next()
-        {
+        for part in rest {
             own = field_of(own, part.name, reference.span)?;
-            subscripts = &part.subscripts;
         }
         let own = own.clone();
-        let mut value = self.elements_of(own, subscripts, reference.span)?;
-        for part in rest {
-            value = field(value, part.name, reference.span)?;
-            value = self.elements_of(value, &part.subscripts, reference.span)?;
-        }
-        Ok(Some(value))
+        let subscripts = self.target.own_subscripts(reference)?;
+        self.elements_of(own, &subscripts, reference.span).map(Some)
     }
 }
 

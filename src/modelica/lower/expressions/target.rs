@@ -11,7 +11,8 @@ use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
-use crate::syntax::ast::{ComponentReference, Expression};
+use crate::syntax::ast::{ComponentReference, Expression, Subscript};
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -150,6 +151,14 @@ pub(crate) trait VariableReferences: Operations {
     fn own_variable(&self, name: Ident) -> Option<&Lowered<Self::Scalar>> {
         let _ = name;
         None
+    }
+    /// The subscripts of all parts of a reference to an own variable, for the array that its last
+    /// component is.
+    fn own_subscripts<'r>(
+        &self,
+        reference: &'r ComponentReference,
+    ) -> Result<Cow<'r, [Subscript]>, Diagnostic> {
+        Ok(reference.parts.last().map_or(&[][..], |part| &part.subscripts).into())
     }
     /// The type of the scalars of a variable that has this path.
     fn value_type(&self, path: &str) -> Option<ValueType>;

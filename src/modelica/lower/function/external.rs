@@ -38,11 +38,7 @@ impl Body<'_, '_> {
                 ast::ExpressionKind::Reference(reference) => reference.as_ident(),
                 _ => None,
             };
-            let component = component.and_then(|name| {
-                let mut all =
-                    function.inputs.iter().chain(&function.outputs).chain(&function.locals);
-                all.find(|component| component.name == name)
-            });
+            let component = component.and_then(|name| function.variable(name));
             arguments.push(self.slot(value, component, argument.span)?);
         }
         if entry.c.is_some() {

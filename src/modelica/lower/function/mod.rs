@@ -50,7 +50,8 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::Expr;
-use crate::syntax::ast::ComponentReference;
+use crate::syntax::ast::{ComponentReference, Subscript};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The outputs of a call in an equation: expressions where its statements can be evaluated
@@ -336,12 +337,55 @@ pub(super) fn component_type(function: &Function, path: &str) -> Option<ValueTyp
     component_of(function, path).map(|component| component.value_type.clone())
 }
 
+/// The subscripts of all parts of `v[i].x[j]`, for the array that `v.x` of an array of records is: a part
+/// with fewer subscripts than dimensions keeps the others whole (MLS §10.5, §10.6.1).
+///
+/// # Errors
+/// A part before the last one has more subscripts than dimensions.
+pub(super) fn subscripts_of<'r>(
+    function: &Function,
+    reference: &'r ComponentReference,
+) -> Result<Cow<'r, [Subscript]>, Diagnostic> {
+    let Some((last, _)) = reference.parts.split_last() else { return Ok(Cow::Borrowed(&[])) };
+    let mut ranks = Vec::with_capacity(reference.parts.len());
+    let mut component: Option<&FunctionComponent> = None;
+    for (at, part) in reference.parts.iter().enumerate() {
+        component = match component.map(|component| &component.value_type) {
+            None if at == 0 => function.variable(part.name),
+            Some(ValueType::Record(_, fields)) => fields.get(&part.name),
+            _ => None,
+        };
+        ranks.push(component.map_or(part.subscripts.len(), |component| component.dims.len()));
+    }
+    let before = &ranks[..ranks.len() - 1];
+    if before.iter().all(|rank| *rank == 0) {
+        return Ok(Cow::Borrowed(&last.subscripts));
+    }
+    let mut subscripts = Vec::new();
+    for (part, rank) in reference.parts.iter().zip(&ranks) {
+        let given = part.subscripts.len();
+        if given > *rank {
+            let name = part.name;
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{given} subscripts for {rank} dimensions of `{name}`"
+            )
+            .at(reference.span));
+        }
+        subscripts.extend(part.subscripts.iter().cloned());
+        subscripts.extend((given..*rank).map(|_| Subscript::All(reference.span)));
+    }
+    let is_whole = |subscript: &Subscript| matches!(subscript, Subscript::All(_));
+    let needed = subscripts.iter().rposition(|subscript| !is_whole(subscript));
+    subscripts.truncate(needed.map_or(0, |last| last + 1));
+    Ok(Cow::Owned(subscripts))
+}
+
 /// The declaration of a variable of a function, or of a field of it.
 fn component_of<'f>(function: &'f Function, path: &str) -> Option<&'f FunctionComponent> {
     let mut parts = Name::parse(path).parts.into_iter();
     let first = parts.next();
-    let mut all = function.inputs.iter().chain(&function.outputs).chain(&function.locals);
-    let component = all.find(|component| Some(component.name) == first)?;
+    let component = function.variable(first?)?;
     parts.try_fold(component, |component, part| match &component.value_type {
         ValueType::Record(_, fields) => fields.get(&part),
         _ => None,

@@ -152,7 +152,7 @@ impl Body<'_, '_> {
             fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
         })?;
         let value = self.with_numbers_like(value, &place, target.span)?;
-        let subscripts = self.subscripts_of(target)?;
+        let subscripts = super::subscripts_of(self.function, target)?;
         if !subscripts.is_empty() {
             return self.assign_elements(&place, &subscripts, &value, target);
         }
@@ -205,28 +205,6 @@ impl Body<'_, '_> {
         }
     }
 
-    /// The subscripts of all parts of `v[i].x[j]`, which are those of the array that `v.x` is.
-    fn subscripts_of(&self, target: &ComponentReference) -> Result<Vec<Subscript>, Diagnostic> {
-        let refused =
-            || Err(fault!(NOT_SUPPORTED, "a slice of an array of records").at(target.span));
-        let mut subscripts = Vec::new();
-        let mut is_whole = false;
-        let mut path = String::new();
-        for (position, part) in target.parts.iter().enumerate() {
-            path.push_str(if position > 0 { "." } else { "" });
-            path.push_str(part.name.as_str());
-            let rank = super::component_of(self.function, &path).map_or(0, |c| c.dims.len());
-            let is_last = position + 1 == target.parts.len();
-            let given = part.subscripts.len();
-            if given > 0 && is_whole || !is_last && given > 0 && given != rank {
-                return refused();
-            }
-            is_whole |= given == 0 && rank > 0;
-            subscripts.extend(part.subscripts.iter().cloned());
-        }
-        Ok(subscripts)
-    }
-
     /// `target[subscripts] := value`, for each array of a record.
     fn assign_elements(
         &mut self,
@@ -249,14 +227,8 @@ impl Body<'_, '_> {
         };
         let choices = self.lowering().choices(&array.dims, subscripts, target.span)?;
         let chosen = self.chosen(&array.dims, choices, target.span)?;
-        if chosen.positions.len() != value.elements.len() {
-            return Err(fault!(
-                ARRAY_MISMATCH,
-                "{} elements are assigned to {}",
-                value.elements.len(),
-                chosen.positions.len()
-            )
-            .at(target.span));
+        if chosen.dims != value.dims {
+            return Err(size_fault(&chosen.dims, &value.dims).at(target.span));
         }
         let Some(Operand::Register(first)) = array.elements.first().copied() else {
             return Ok(());

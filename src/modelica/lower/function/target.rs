@@ -15,7 +15,8 @@ use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{FunctionId, Value};
-use crate::syntax::ast::ComponentReference;
+use crate::syntax::ast::{ComponentReference, Subscript};
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -197,6 +198,13 @@ impl VariableReferences for Body<'_, '_> {
 
     fn own_variable(&self, name: Ident) -> Option<&Lowered<Operand>> {
         self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
+    }
+
+    fn own_subscripts<'r>(
+        &self,
+        reference: &'r ComponentReference,
+    ) -> Result<Cow<'r, [Subscript]>, Diagnostic> {
+        super::subscripts_of(self.function, reference)
     }
 
     fn value_type(&self, path: &str) -> Option<ValueType> {
