@@ -14,7 +14,7 @@ codes! {
         "## What it means\n\nThe sizes of two arrays, or of an array and the variable it is assigned to, do not match.\n\n## Example\n\n`{1, 2} + {1, 2, 3}`\n\n## What to do\n\nCompare `size(a)` of both; `transpose`, `vector`, `matrix` and slices change shapes.",
     /// An Integer result outside 64 bits.
     INTEGER_OVERFLOW = "integer-overflow":
-        "## What it means\n\nThe exact result of an Integer operation does not fit in 64 bits. It is never wrapped around or rounded.\n\n## Example\n\n`9223372036854775807 + 1`\n\n## What to do\n\nCompute with Reals (write `1.0` for `1`) where the magnitude matters more than the last digit.",
+        "## What it means\n\nThe exact result of an Integer operation does not fit in 64 bits, or in a model is beyond 9007199254740991 (2^53 - 1): models compute with Reals, in which larger Integers are not exact. It is never wrapped around or rounded.\n\n## Example\n\n`9223372036854775807 + 1`\n\n## What to do\n\nCompute with Reals (write `1.0` for `1`) where the magnitude matters more than the last digit.",
     /// A Real result beyond the largest number.
     REAL_OVERFLOW = "real-overflow":
         "## What it means\n\nA number is larger than the largest Real, about 1.8e308. The result is not replaced by infinity, which would propagate to every number computed from it.\n\n## Example\n\n`exp(1000)`\n\n## What to do\n\nScale the quantities, or compute with logarithms. Use `Modelica.Constants.inf`, which is 1e60, for a limit that is never reached.",

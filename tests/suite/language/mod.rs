@@ -10,6 +10,7 @@ mod conversions;
 mod diagnostics;
 mod empty_ports;
 mod every_element;
+mod exact_integers;
 mod external;
 mod flattening;
 mod flattening_properties;

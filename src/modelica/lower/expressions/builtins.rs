@@ -13,6 +13,7 @@ use crate::functions::{
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::lower::string_array::StringArray;
+use crate::name::Name;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{self, FunctionId};
@@ -333,10 +334,15 @@ impl<T: Target> Lowering<'_, T> {
             }
         };
         let scalar = |element| Ok(Array { dims: Vec::new(), elements: vec![element] });
-        match reduction {
-            Reduction::Sum => return scalar(self.fold(Binary::Add, 0.0, &elements)),
-            Reduction::Product => return scalar(self.fold(Binary::Mul, 1.0, &elements)),
-            Reduction::Min | Reduction::Max => {}
+        let folded = match reduction {
+            Reduction::Sum => Some(self.fold(Binary::Add, 0.0, &elements)),
+            Reduction::Product => Some(self.fold(Binary::Mul, 1.0, &elements)),
+            Reduction::Min | Reduction::Max => None,
+        };
+        if let Some(folded) = folded {
+            let folded = Array::scalar(folded);
+            let is_integer = elements.len() > 1 && self.is_integer(name, arguments, span);
+            return if is_integer { self.exact(folded, span) } else { Ok(folded) };
         }
         let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
             // The greatest and the least value (MLS §10.3.4.1), as the interpreter has them.
@@ -353,6 +359,14 @@ impl<T: Target> Lowering<'_, T> {
             result = self.target.apply(id, &[result, *element], self.live, span)?;
         }
         scalar(result)
+    }
+
+    /// Whether the value of a built-in function is an Integer.
+    fn is_integer(&mut self, name: &str, arguments: &Arguments, span: Span) -> bool {
+        let function = ComponentReference::from_name(&Name::parse(name), span);
+        let arguments = Box::new(arguments.clone());
+        let call = Expression::new(ExpressionKind::Call { function, arguments }, span);
+        self.type_of(&call) == ValueType::Integer
     }
 
     /// The sum of arrays of these sizes, which follow one another (MLS §10.3.4.1).

@@ -33,7 +33,7 @@ impl<T: Target> Lowering<'_, T> {
     fn lower_kind(&mut self, e: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let array = match &e.kind {
             ExpressionKind::Real(value) => Array::scalar(self.target.constant(*value)),
-            ExpressionKind::Integer(value) => Array::scalar(self.target.constant(*value as f64)),
+            ExpressionKind::Integer(value) => self.integer(*value, e.span)?,
             ExpressionKind::Boolean(value) => {
                 Array::scalar(self.target.constant(f64::from(u8::from(*value))))
             }

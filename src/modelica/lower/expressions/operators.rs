@@ -2,13 +2,16 @@
 
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
 use crate::diag::{At, Diagnostic};
+use crate::eval::ValueType;
 use crate::fault;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
+use crate::symbolic::function::{self, INTEGER_ARITHMETIC, LARGEST_INTEGER};
 use crate::syntax::ast::{BinaryOperator, Expression};
 use crate::value::check_length;
+use crate::value::errors::INTEGER_OVERFLOW;
 use crate::value::ops::product_sizes;
 use std::sync::Arc;
 
@@ -53,36 +56,100 @@ impl<T: Target> Lowering<'_, T> {
             };
         }
         let b = self.array(right)?;
-        let array = match operator {
-            BinaryOperator::Add => self.same_size(Binary::Add, a, b, span)?,
-            BinaryOperator::Subtract => self.same_size(Binary::Sub, a, b, span)?,
-            BinaryOperator::ElementwiseAdd => self.elementwise(Binary::Add, a, b, span)?,
-            BinaryOperator::ElementwiseSubtract => self.elementwise(Binary::Sub, a, b, span)?,
-            BinaryOperator::ElementwiseMultiply => self.elementwise(Binary::Mul, a, b, span)?,
-            BinaryOperator::ElementwiseDivide => self.elementwise(Binary::Div, a, b, span)?,
-            BinaryOperator::ElementwisePower => self.elementwise(Binary::Pow, a, b, span)?,
-            BinaryOperator::Multiply => self.product(a, b, span)?,
-            BinaryOperator::Divide if b.dims.is_empty() => {
-                self.elementwise(Binary::Div, a, b, span)?
-            }
-            BinaryOperator::Divide => {
-                return Err(fault!(ARRAY_MISMATCH, "the divisor is an array";
-                    help: "write `./` for element-wise division")
-                .at(span));
-            }
-            BinaryOperator::Power => self.power(a, b, span)?,
-            BinaryOperator::And => self.same_size(Binary::And, a, b, span)?,
-            BinaryOperator::Or => self.same_size(Binary::Or, a, b, span)?,
-            BinaryOperator::Less => self.compare(RelationOperator::Less, a, b, span)?,
-            BinaryOperator::LessEqual => self.compare(RelationOperator::LessEqual, a, b, span)?,
-            BinaryOperator::Greater => self.compare(RelationOperator::Greater, a, b, span)?,
-            BinaryOperator::GreaterEqual => {
-                self.compare(RelationOperator::GreaterEqual, a, b, span)?
-            }
-            BinaryOperator::Equal => self.compare(RelationOperator::Equal, a, b, span)?,
-            BinaryOperator::NotEqual => self.compare(RelationOperator::NotEqual, a, b, span)?,
-        };
+        let may_be_inexact = self.may_be_inexact(operator, [&a, &b]);
+        let array = self.of_arrays(operator, a, b, span)?;
+        let is_integer = may_be_inexact
+            && self.type_of(right) == ValueType::Integer
+            && self.type_of(left) == ValueType::Integer;
+        let array = if is_integer { self.exact(array, span)? } else { array };
         Ok(Lowered::Array(array))
+    }
+
+    /// Whether Integers may lead beyond those that are exact: a sum with a number is far from it, and would
+    /// have to be made too often.
+    fn may_be_inexact(&self, operator: BinaryOperator, sides: [&Array<T::Scalar>; 2]) -> bool {
+        let varies = |array: &Array<T::Scalar>| {
+            array.elements.iter().any(|element| self.target.as_constant(*element).is_none())
+        };
+        match operator {
+            BinaryOperator::Multiply | BinaryOperator::ElementwiseMultiply => true,
+            BinaryOperator::Add
+            | BinaryOperator::Subtract
+            | BinaryOperator::ElementwiseAdd
+            | BinaryOperator::ElementwiseSubtract => sides.into_iter().all(varies),
+            _ => false,
+        }
+    }
+
+    /// An operation on numbers.
+    fn of_arrays(
+        &mut self,
+        operator: BinaryOperator,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        match operator {
+            BinaryOperator::Add => self.same_size(Binary::Add, a, b, span),
+            BinaryOperator::Subtract => self.same_size(Binary::Sub, a, b, span),
+            BinaryOperator::ElementwiseAdd => self.elementwise(Binary::Add, a, b, span),
+            BinaryOperator::ElementwiseSubtract => self.elementwise(Binary::Sub, a, b, span),
+            BinaryOperator::ElementwiseMultiply => self.elementwise(Binary::Mul, a, b, span),
+            BinaryOperator::ElementwiseDivide => self.elementwise(Binary::Div, a, b, span),
+            BinaryOperator::ElementwisePower => self.elementwise(Binary::Pow, a, b, span),
+            BinaryOperator::Multiply => self.product(a, b, span),
+            BinaryOperator::Divide if b.dims.is_empty() => {
+                self.elementwise(Binary::Div, a, b, span)
+            }
+            BinaryOperator::Divide => Err(fault!(ARRAY_MISMATCH, "the divisor is an array";
+                help: "write `./` for element-wise division")
+            .at(span)),
+            BinaryOperator::Power => self.power(a, b, span),
+            BinaryOperator::And => self.same_size(Binary::And, a, b, span),
+            BinaryOperator::Or => self.same_size(Binary::Or, a, b, span),
+            BinaryOperator::Less => self.compare(RelationOperator::Less, a, b, span),
+            BinaryOperator::LessEqual => self.compare(RelationOperator::LessEqual, a, b, span),
+            BinaryOperator::Greater => self.compare(RelationOperator::Greater, a, b, span),
+            BinaryOperator::GreaterEqual => {
+                self.compare(RelationOperator::GreaterEqual, a, b, span)
+            }
+            BinaryOperator::Equal => self.compare(RelationOperator::Equal, a, b, span),
+            BinaryOperator::NotEqual => self.compare(RelationOperator::NotEqual, a, b, span),
+        }
+    }
+
+    /// A literal.
+    pub(super) fn integer(
+        &mut self,
+        value: i64,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let literal = Array::scalar(self.target.constant(value as f64));
+        let is_exact = i128::from(value) == value as f64 as i128;
+        if is_exact { Ok(literal) } else { self.exact(literal, span) }
+    }
+
+    /// Integers that are exact or fail: models compute with Reals.
+    pub(super) fn exact(
+        &mut self,
+        mut integers: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let Some(arithmetic) = function::find(INTEGER_ARITHMETIC) else { return Ok(integers) };
+        for integer in &mut integers.elements {
+            *integer = match self.target.as_constant(*integer) {
+                Some(known) if known.abs() <= LARGEST_INTEGER => *integer,
+                Some(known) => {
+                    return Err(fault!(
+                        INTEGER_OVERFLOW,
+                        "{known} is beyond {LARGEST_INTEGER}, up to which models have exact Integers";
+                        help: "use Reals, or a function that a script calls")
+                    .at(span));
+                }
+                None => self.target.apply(arithmetic, &[*integer], true, span)?,
+            };
+        }
+        Ok(integers)
     }
 
     /// `a and b` as `if a then b else false`, `a or b` as `if a then true else b`.

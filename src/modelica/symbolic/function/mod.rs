@@ -16,6 +16,8 @@ mod random;
 mod rounding;
 mod trigonometric;
 
+pub(crate) use rounding::{INTEGER_ARITHMETIC, LARGEST_INTEGER};
+
 const FAMILIES: &[&[Function]] = &[
     elementary::FUNCTIONS,
     extremum::FUNCTIONS,

@@ -1,8 +1,18 @@
 //! Division with remainder and rounding: functions that jump (MLS §3.7.2).
 
-use super::{Domain, Function, ResultType, Value, real, zero};
+use super::{Domain, Function, ResultType, UnitRule, Value, real, zero};
 use crate::symbolic::node::Expr;
 use crate::symbolic::pool::Pool;
+
+/// The Integers up to this one are exact as Reals, in which models compute: no other Integer is rounded
+/// to them.
+pub(crate) const LARGEST_INTEGER: f64 = 9_007_199_254_740_991.0;
+/// What results of Integers go through. It has no name that could be called.
+pub(crate) const INTEGER_ARITHMETIC: &str = "Integer arithmetic";
+
+fn exact(x: f64) -> f64 {
+    if x.abs() <= LARGEST_INTEGER { x } else { f64::NAN }
+}
 
 const NONZERO_DIVISOR: Option<Domain> =
     Some(Domain { contains: |x| x[1] != 0.0, words: "the second argument must not be zero" });
@@ -33,6 +43,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
     jumping("ceil", Value::Unary(f64::ceil), ResultType::Real, zero),
     jumping("floor", Value::Unary(f64::floor), ResultType::Real, zero),
     jumping("integer", Value::Unary(f64::floor), ResultType::Integer, zero),
+    Function {
+        domain: Some(Domain {
+            contains: |x| x[0].abs() <= LARGEST_INTEGER,
+            words: "the result is beyond 9007199254740991, up to which models have exact Integers",
+        }),
+        result: ResultType::Integer,
+        unit: UnitRule::As(0),
+        section: "MLS §10.6",
+        ..real(INTEGER_ARITHMETIC, Value::Unary(exact), |pool, _, _| pool.constant(1.0))
+    },
 ];
 
 const fn jumping(
