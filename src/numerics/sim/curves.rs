@@ -33,9 +33,9 @@ impl Run<'_> {
             }
             self.problem.statistics.steps += 1;
             let begin = self.t;
-            self.t = self.outputs.next().map_or(stop, |point| point.min(stop));
+            self.t = self.recorder.points.next().map_or(stop, |point| point.min(stop));
             self.check_step(begin)?;
-            if self.outputs.next() == Some(self.t) {
+            if self.recorder.points.next() == Some(self.t) {
                 self.record()?;
                 self.advance_output();
             }

@@ -35,7 +35,7 @@ impl Run<'_> {
         if was_constrained && outcome != EventOutcome::Terminate {
             outcome = self.continue_after_event(surfaces, contacts)?;
         }
-        while self.outputs.next().is_some_and(|point| point <= t) {
+        while self.recorder.points.next().is_some_and(|point| point <= t) {
             self.advance_output();
         }
         match outcome {

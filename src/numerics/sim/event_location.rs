@@ -61,7 +61,7 @@ impl Run<'_> {
         if share <= part {
             return end;
         }
-        let mut following = self.outputs.following(settings);
+        let mut following = self.recorder.points.following(settings);
         let point = following.find(|point| *point > part).unwrap_or(end);
         share.min(point).min(end)
     }

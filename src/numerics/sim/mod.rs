@@ -91,11 +91,11 @@ mod literal_relations;
 mod newton;
 mod nominals;
 mod norm;
-mod output_points;
 mod portable;
 #[cfg(test)]
 mod problems;
 mod progress;
+mod recorder;
 mod recording;
 mod run;
 mod settings;

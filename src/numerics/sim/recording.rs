@@ -3,7 +3,6 @@
 
 use super::run::Run;
 use super::{Events, Failure, Residual, SimErrorKind};
-use std::sync::atomic::Ordering;
 
 /// Points of every step that a system with a memory is shown.
 const POINTS_REMEMBERED: u32 = 4;
@@ -14,7 +13,7 @@ impl Run<'_> {
     /// Records the output points before `end`; y is y(`end`) afterwards as before.
     pub(super) fn record_before(&mut self, end: f64) -> Result<(), SimErrorKind> {
         let mut moved = false;
-        while let Some(point) = self.outputs.next().filter(|point| *point < end) {
+        while let Some(point) = self.recorder.points.next().filter(|point| *point < end) {
             self.integrator.interpolate(point, self.y);
             self.t = point;
             self.record()?;
@@ -69,21 +68,16 @@ impl Run<'_> {
                 _ => holds = middle,
             }
         }
-        self.out.end_at(self.t);
+        self.recorder.rows.end_at(self.t);
         Err(failed)
     }
 
     pub(crate) fn advance_output(&mut self) {
-        self.outputs.advance(self.problem.settings);
+        self.recorder.points.advance(self.problem.settings);
     }
 
     pub fn record(&mut self) -> Result<(), SimErrorKind> {
-        let observed = self.problem.system.observe(self.t, self.y, self.observed);
-        observed.map_err(|failure: Failure| SimErrorKind::Evaluation(failure))?;
-        self.out.push(self.t, self.observed);
-        if let Some(reached) = &self.problem.settings.reached {
-            reached.store(self.t.to_bits(), Ordering::Relaxed);
-        }
-        Ok(())
+        let recorded = self.recorder.record(&mut self.problem, self.t, self.y);
+        recorded.map_err(SimErrorKind::Evaluation)
     }
 }

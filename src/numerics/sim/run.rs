@@ -6,10 +6,10 @@ use super::event_rush::EventRush;
 use super::integrators::nonstiff::{Distance, Nonstiff, Patience};
 use super::integrators::{Integrator, Problem};
 use super::nominals::Nominals;
-use super::output_points::OutputPoints;
 use super::progress::Progress;
+use super::recorder::Recorder;
 use super::switches::Watch;
-use super::{Effort, SimErrorKind, Trajectory};
+use super::{Effort, SimErrorKind};
 
 /// Whether the simulation continues after an event.
 #[derive(PartialEq)]
@@ -54,11 +54,9 @@ pub struct Run<'a> {
     pub(super) watch: &'a mut Watch,
     pub(super) nominals: &'a Nominals,
     pub(super) y: &'a mut Vec<f64>,
-    pub(super) observed: &'a mut [f64],
     pub(super) effort: &'a mut Effort,
-    pub(super) out: &'a mut Trajectory,
     pub(super) t: f64,
-    pub(super) outputs: OutputPoints,
+    pub(super) recorder: Recorder<'a>,
     pub(super) rush: EventRush,
     pub(super) branch_switches: BranchSwitches,
     pub(super) progress: Progress,

@@ -60,7 +60,7 @@ impl Run<'_> {
             return Err(SimErrorKind::StepBudget);
         }
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
-        if self.outputs.next() == Some(self.t) {
+        if self.recorder.points.next() == Some(self.t) {
             self.record()?;
             self.advance_output();
         }
@@ -92,8 +92,8 @@ impl Run<'_> {
         let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
         limit = limit.min(self.t + self.problem.system.longest_step());
-        if self.outputs.ends_at_points {
-            limit = self.outputs.next().map_or(limit, |point| limit.min(point));
+        if self.recorder.points.ends_at_points {
+            limit = self.recorder.points.next().map_or(limit, |point| limit.min(point));
         }
         self.integrator.step(&mut self.problem, limit)?;
         let Some(event) = event else { return Ok(false) };
@@ -144,7 +144,7 @@ impl Run<'_> {
                     self.y.copy_from_slice(self.integrator.state());
                     self.look_between_steps()?;
                     self.check_step(begin)?;
-                    if self.outputs.next() == Some(end) {
+                    if self.recorder.points.next() == Some(end) {
                         self.record()?;
                         self.advance_output();
                     }

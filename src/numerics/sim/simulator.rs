@@ -6,8 +6,8 @@ use super::event_rush::EventRush;
 use super::integrators::nonstiff::{self, Nonstiff};
 use super::integrators::{Exact, Integrator, Problem, WithoutUnknowns, bdf};
 use super::nominals::Nominals;
-use super::output_points::OutputPoints;
 use super::progress::Progress;
+use super::recorder::{OutputPoints, Recorder};
 use super::run::{BranchSwitches, Ended, Run};
 use super::sliding::Sliding;
 use super::switches::Watch;
@@ -149,11 +149,13 @@ impl Simulator {
             watch: &mut self.watch,
             nominals: &self.nominals,
             y: &mut self.y,
-            observed: &mut self.observed,
             effort: &mut self.effort,
-            out,
             t: settings.start,
-            outputs: OutputPoints::new(settings, n == 0 || linearity.is_some()),
+            recorder: Recorder {
+                observed: &mut self.observed,
+                rows: out,
+                points: OutputPoints::new(settings, n == 0 || linearity.is_some()),
+            },
             rush: EventRush::NONE,
             branch_switches: BranchSwitches::NONE,
             progress: Progress::default(),

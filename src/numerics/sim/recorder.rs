@@ -1,6 +1,33 @@
-//! The output points of a run.
+//! Rows of results, and the output points at which they are due.
 
-use super::Settings;
+use super::integrators::Problem;
+use super::{Failure, Residual, Settings, Trajectory};
+use std::sync::atomic::Ordering;
+
+/// Where the rows of a run go.
+pub(crate) struct Recorder<'a> {
+    /// What is observed.
+    pub(super) observed: &'a mut [f64],
+    pub(super) rows: &'a mut Trajectory,
+    pub(super) points: OutputPoints,
+}
+
+impl Recorder<'_> {
+    /// Observes the system at (t, y), which becomes a row.
+    pub(super) fn record(
+        &mut self,
+        problem: &mut Problem,
+        t: f64,
+        y: &[f64],
+    ) -> Result<(), Failure> {
+        problem.system.observe(t, y, self.observed)?;
+        self.rows.push(t, self.observed);
+        if let Some(reached) = &problem.settings.reached {
+            reached.store(t.to_bits(), Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
 
 /// The output points of a run.
 pub(crate) struct OutputPoints {
