@@ -61,7 +61,7 @@ impl Residual for System {
 
     fn linearity(&self) -> Option<Linearity> {
         let program = &self.program;
-        if !program.selections.is_empty() || self.has_past() {
+        if !program.selections.is_empty() || self.program.has_past() {
             return None;
         }
         let has_assertions =
@@ -178,7 +178,7 @@ impl Events for System {
         let (first, others) = out.split_at_mut(self.program.n_crossings());
         let (last, transported) = others.split_at_mut(self.loops.choices.len());
         self.relation_crossings(first)?;
-        self.transported_crossings(t, transported)?;
+        self.delays.transported_crossings(&self.program, &mut self.registers, t, transported)?;
         for ((choice, selection), out) in
             self.loops.choices.iter_mut().zip(&self.program.selections).zip(last)
         {
@@ -214,7 +214,7 @@ impl Events for System {
             .copied()
             .chain(self.scheduled())
             .chain(self.next_knots())
-            .chain(self.arriving_jumps());
+            .chain(self.delays.arriving_jumps());
         all.filter(later).min_by(f64::total_cmp)
     }
 
@@ -227,13 +227,17 @@ impl Events for System {
     }
 
     fn remembers(&self) -> bool {
-        self.has_past()
+        self.program.has_past()
     }
 
     fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
-        self.remember_values(t).map_err(|f| self.refine(f))?;
-        self.record_transported(t).map_err(|f| self.refine(f))
+        self.delays
+            .remember_values(&self.program, &mut self.registers, t)
+            .map_err(|f| self.refine(f))?;
+        self.delays
+            .record_transported(&self.program, &mut self.registers, t)
+            .map_err(|f| self.refine(f))
     }
 
     fn has_kinks(&self) -> bool {
@@ -241,7 +245,7 @@ impl Events for System {
     }
 
     fn longest_step(&self) -> f64 {
-        self.delays.delay_times.iter().copied().fold(self.longest_transport(), f64::min)
+        self.delays.longest_step(&self.program)
     }
 
     fn set_uncertainty(&mut self, crossings: &[f64]) {

@@ -113,8 +113,9 @@ impl System {
             self.solve(Stage::Continuous)?;
         }
         self.update_previous();
-        let arrived =
-            self.advance_histories(t) | self.load_transported(t, true) | self.advance_recordings(t);
+        let arrived = self.delays.advance_histories(&self.program, &mut self.registers, t)
+            | self.delays.load_transported(&self.program, &mut self.registers, t, true)
+            | self.advance_recordings(t);
         let sampled = self.samples_due(t);
         let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
         match (sampled, outcome) {
@@ -192,7 +193,8 @@ impl System {
             terminated |= self.check_at_event(t)?;
             self.carry_through_event()?;
             let set = self.reinitialize()?;
-            let moved = self.update_previous() | self.load_transported(t, true);
+            let moved = self.update_previous()
+                | self.delays.load_transported(&self.program, &mut self.registers, t, true);
             changed |= set | moves;
             if !set && !moved && !moves {
                 return Ok(match terminated {

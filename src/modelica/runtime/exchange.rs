@@ -64,7 +64,7 @@ impl System {
         let (first, others) = out.split_at_mut(self.program.n_crossings());
         let (last, transported) = others.split_at_mut(self.loops.choices.len());
         self.distances(first)?;
-        self.transported_crossings(t, transported)?;
+        self.delays.transported_crossings(&self.program, &mut self.registers, t, transported)?;
         transported.iter_mut().step_by(2).for_each(|z| *z = -*z);
         let choices = self.loops.choices.iter_mut().zip(&self.program.selections);
         for ((choice, selection), out) in choices.zip(last) {
@@ -91,7 +91,9 @@ impl System {
             self.relation_value(*at, holds, t) != holds
         });
         let others = relations.len()..program.n_crossings() + program.selections.len();
-        Ok(changes || indicators[others].iter().any(|z| *z < 0.0) || self.is_at_border(t)?)
+        Ok(changes
+            || indicators[others].iter().any(|z| *z < 0.0)
+            || self.delays.is_at_border(&self.program, &mut self.registers, t)?)
     }
 
     /// Writes what the integrator holds, as the last evaluation has left it: states, and the unknowns of

@@ -47,8 +47,8 @@ impl System {
         self.log_assertions_at_event(t)?;
         self.improve_choices()?;
         self.start_clocks(t)?;
-        self.start_histories(t)?;
-        self.start_transported(t)?;
+        self.delays.start_histories(&self.program, &mut self.registers, t)?;
+        self.delays.start_transported(&self.program, &mut self.registers, t)?;
         self.start_sensitivities()?;
         self.iterate_at_start(t)?;
         self.improve_choices()?;
@@ -71,11 +71,14 @@ impl System {
         while self.event(t)? == EventOutcome::Again {}
         // What was before the start is what the events of the first instant lead to.
         for _ in 0..MAX_ROUNDS {
-            let other = self.start_histories(t)?;
-            if !(self.start_transported(t)? | self.load_transported(t, true) | other) {
+            let other = self.delays.start_histories(&self.program, &mut self.registers, t)?;
+            if !(self.delays.start_transported(&self.program, &mut self.registers, t)?
+                | self.delays.load_transported(&self.program, &mut self.registers, t, true)
+                | other)
+            {
                 return Ok(());
             }
-            self.load_delayed(t);
+            self.delays.load_delayed(&self.program, &mut self.registers, t);
             while self.event(t)? == EventOutcome::Again {}
         }
         Err(Failure::EventIteration { variable: self.events.unstable })

@@ -15,9 +15,9 @@ impl System {
             registers[variable.0 as usize] = *value;
         }
         if !self.delays.histories.is_empty() {
-            self.load_delayed(t);
+            self.delays.load_delayed(&self.program, &mut self.registers, t);
         }
-        self.load_transported(t, false);
+        self.delays.load_transported(&self.program, &mut self.registers, t, false);
         if self.sensitivity.is_some() {
             self.load_derivatives(y);
         }
@@ -43,14 +43,14 @@ impl System {
         self.agree_with_transported(t)?;
         self.note_solution(t, y);
         // What delays and pipes read at a point changes with what they record, derivatives with y.
-        self.loops.is_solved = !self.has_past() && self.sensitivity.is_none();
+        self.loops.is_solved = !self.program.has_past() && self.sensitivity.is_none();
         Ok(())
     }
 
     /// Solves for iteration variables until they agree with the values that depend on them.
     pub(super) fn agree_with_transported(&mut self, t: f64) -> Result<(), Failure> {
         for _ in 0..PASSES {
-            if !self.load_transported(t, false) {
+            if !self.delays.load_transported(&self.program, &mut self.registers, t, false) {
                 return Ok(());
             }
             self.solve(Stage::Continuous)?;

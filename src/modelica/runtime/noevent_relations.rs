@@ -27,7 +27,7 @@ impl System {
     /// one. y is loaded and solved.
     pub(super) fn replace_program(&mut self, t: f64) -> Result<bool, Failure> {
         // The past of delays and derivatives along directions belong to the program at hand.
-        if self.has_directions() || self.has_past() {
+        if self.has_directions() || self.program.has_past() {
             return Ok(false);
         }
         let Some(program) = self.program.clone().with_events().cloned() else { return Ok(false) };

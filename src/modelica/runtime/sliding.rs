@@ -25,7 +25,7 @@ impl System {
 
     pub(super) fn is_memoryless(&self, crossing: usize) -> bool {
         let relation = self.relation_of(crossing);
-        relation.is_some_and(|at| self.program.switching.memoryless[at]) && !self.has_past()
+        relation.is_some_and(|at| self.program.switching.memoryless[at]) && !self.program.has_past()
     }
 
     /// Whether the relation of a crossing function chooses equations of a torn loop.

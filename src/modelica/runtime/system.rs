@@ -117,6 +117,11 @@ impl System {
         if self.loops.solves_loops { 0 } else { self.program.continuous.iteration.len() }
     }
 
+    /// Whether delays read at `t` what has been recorded.
+    pub fn knows_past(&self, t: f64) -> bool {
+        self.delays.knows_past(t)
+    }
+
     /// Whether loops are solved inside, and there are some.
     pub(super) fn has_inner_loops(&self) -> bool {
         self.loops.solves_loops && !self.program.continuous.iteration.is_empty()
