@@ -3,6 +3,7 @@
 use super::difference_quotients::quotient;
 use super::execution::read;
 use super::instants::{Stage, same_time};
+use super::recordings::distance_of_knots;
 use super::system::System;
 use crate::sim::{
     EventOutcome, Events, Failure, Linearity, Modes, Pattern, Residual, Sensitive, Side, Treatment,
@@ -145,7 +146,7 @@ impl Sensitive for System {
 
 impl Events for System {
     fn sample_distance(&self, start: f64, stop: f64) -> Option<f64> {
-        self.distance_of_knots(start, stop)
+        distance_of_knots(&self.program, start, stop)
     }
 
     fn has_event_at_start(&self) -> bool {
@@ -213,7 +214,7 @@ impl Events for System {
             .flatten()
             .copied()
             .chain(self.scheduled())
-            .chain(self.next_knots())
+            .chain(self.inputs.next_knots(&self.program))
             .chain(self.delays.arriving_jumps());
         all.filter(later).min_by(f64::total_cmp)
     }

@@ -17,7 +17,9 @@ impl System {
         if self.program.acts_by_recordings_alone() {
             self.relations.is_at_start = false;
             self.registers.calls.next_instant();
-            return Ok(EventOutcome::Continue { y_changed: self.advance_recordings(t) });
+            return Ok(EventOutcome::Continue {
+                y_changed: self.inputs.advance(&self.program, &mut self.registers, t),
+            });
         }
         self.load(t, y);
         self.relations.is_at_start = false;

@@ -98,7 +98,7 @@ impl System {
     pub(super) fn event(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let program = self.program.clone();
         if program.events.is_empty() {
-            let jumps = self.advance_recordings(t);
+            let jumps = self.inputs.advance(&self.program, &mut self.registers, t);
             let y_changed = self.at_instant(t, |own| own.iterate_events(t, Stage::Event))?;
             return Ok(EventOutcome::Continue { y_changed: y_changed | jumps });
         }
@@ -115,7 +115,7 @@ impl System {
         self.update_previous();
         let arrived = self.delays.advance_histories(&self.program, &mut self.registers, t)
             | self.delays.load_transported(&self.program, &mut self.registers, t, true)
-            | self.advance_recordings(t);
+            | self.inputs.advance(&self.program, &mut self.registers, t);
         let sampled = self.samples_due(t);
         let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
         match (sampled, outcome) {

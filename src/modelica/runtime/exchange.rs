@@ -236,7 +236,7 @@ impl System {
 
     /// What the system has come to.
     pub fn snapshot(&self) -> Snapshot {
-        let (relations, events) = (&self.relations, &self.events);
+        let (relations, events, inputs) = (&self.relations, &self.events, &self.inputs);
         Snapshot {
             registers: self.registers.registers.clone(),
             relations: RelationSnapshot {
@@ -248,8 +248,8 @@ impl System {
                 kept: relations.kept.clone(),
             },
             clocks: events.clocks.clone(),
-            knots_passed: events.knots_passed.clone(),
-            given: events.given.clone(),
+            knots_passed: inputs.knots_passed.clone(),
+            given: inputs.given.clone(),
             before: events.before.clone(),
             is_sampled: events.sampled,
             past: self.delays.clone(),
@@ -259,6 +259,7 @@ impl System {
     /// Continues from there; whether it is a snapshot of this program.
     pub fn continue_from(&mut self, snapshot: Snapshot) -> bool {
         let (relations, events) = (&mut self.relations, &mut self.events);
+        let inputs = &mut self.inputs;
         let Snapshot { registers, relations: of_relations, .. } = snapshot;
         let fits = registers.len() == self.registers.registers.len()
             && of_relations.switches.len() == relations.switches.len()
@@ -267,7 +268,7 @@ impl System {
             && of_relations.uncertainty.len() == relations.uncertainty.len()
             && of_relations.kept.iter().all(|(at, _)| *at < relations.switches.len())
             && snapshot.clocks.len() == events.clocks.len()
-            && snapshot.knots_passed.len() == events.knots_passed.len()
+            && snapshot.knots_passed.len() == inputs.knots_passed.len()
             && snapshot.before.len() == events.before.len()
             && snapshot.past.fits(&self.program)
             && snapshot.given.iter().all(|(at, _)| (*at as usize) < registers.len());
@@ -283,8 +284,8 @@ impl System {
         relations.uncertainty = of_relations.uncertainty;
         relations.kept = of_relations.kept;
         events.clocks = snapshot.clocks;
-        events.knots_passed = snapshot.knots_passed;
-        events.given = snapshot.given;
+        inputs.knots_passed = snapshot.knots_passed;
+        inputs.given = snapshot.given;
         events.before = snapshot.before;
         events.sampled = snapshot.is_sampled;
         self.delays = snapshot.past;

@@ -43,7 +43,7 @@ impl System {
         }
         self.prefer_present_values();
         self.take_start_values_of_events();
-        self.start_recordings(t);
+        self.inputs.start(&self.program, &mut self.registers, t);
         self.relations.has_changed.fill(false);
         self.relations.held.fill(false);
         self.relations.is_idle.fill(false);

@@ -57,8 +57,7 @@ impl System {
         next.relations.switches[m..].fill(None);
         next.loops.choices = self.loops.choices.clone();
         next.events.clocks = self.events.clocks.clone();
-        next.events.knots_passed = self.events.knots_passed.clone();
-        next.events.given = self.events.given.clone();
+        next.inputs = self.inputs.clone();
         next.events.before = self.events.before.clone();
         next.events.previous_iterate = self.events.previous_iterate.clone();
         next.events.sampled = self.events.sampled;

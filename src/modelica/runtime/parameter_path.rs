@@ -40,7 +40,7 @@ impl System {
     fn start_with_own_parameters(&mut self, t: f64) -> Result<Vec<f64>, Failure> {
         let unsolved = Failure::Initialization { block: 0 };
         let known = self.loops.own_start.take();
-        let is_known = |start: &SolvedStart| start.time == t && start.given == self.events.given;
+        let is_known = |start: &SolvedStart| start.time == t && start.given == self.inputs.given;
         let start = match known.filter(|start| is_known(start)) {
             Some(start) => start,
             None => {
@@ -52,7 +52,7 @@ impl System {
                 self.set = set;
                 let program = &self.program;
                 let values = solved.then(|| places(program).map(|at| self.registers[at]).collect());
-                Box::new(SolvedStart { time: t, given: self.events.given.clone(), values })
+                Box::new(SolvedStart { time: t, given: self.inputs.given.clone(), values })
             }
         };
         self.loops.own_start.insert(start).values.clone().ok_or(unsolved)

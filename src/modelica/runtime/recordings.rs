@@ -2,48 +2,58 @@
 //! so that the segment that ends at a knot continues until the event there has been handled.
 
 use super::instants::same_time;
-use super::system::System;
+use crate::codegen::memory::Memory;
+use crate::codegen::program::Program;
 use crate::lower::Recording;
 
-impl System {
+/// Where the recorded inputs are.
+#[derive(Debug, Clone)]
+pub(super) struct RecordedInputs {
+    /// How many knots of each recording have been passed.
+    pub(super) knots_passed: Vec<usize>,
+    /// Values that are set from outside, by their registers.
+    pub(super) given: Vec<(u32, f64)>,
+}
+
+impl RecordedInputs {
+    pub(super) fn new(program: &Program) -> RecordedInputs {
+        let knots_passed = vec![0; program.sorted.dae.events.recordings.len()];
+        RecordedInputs { knots_passed, given: Vec::new() }
+    }
+
     /// Places all recordings at `t`: a knot there has been passed.
-    pub(super) fn start_recordings(&mut self, t: f64) {
-        let program = self.program.clone();
+    pub(super) fn start(&mut self, program: &Program, registers: &mut Memory, t: f64) {
         let recordings = &program.sorted.dae.events.recordings;
-        self.events.knots_passed.clear();
+        self.knots_passed.clear();
         for recording in recordings {
             let passed = recording.passed(0, t);
-            self.events.knots_passed.push(passed);
-            self.set_segment(recording, passed);
+            self.knots_passed.push(passed);
+            recording.load(registers, passed);
         }
-        for (register, value) in &self.events.given {
-            self.registers.registers[*register as usize] = *value;
+        for (register, value) in &self.given {
+            registers[*register as usize] = *value;
         }
     }
 
-    /// Gives a recorded input, by its number from [`Program::recorded_input`](crate::codegen::Program::recorded_input),
-    /// a value that holds from the next event, or the start, until another one is given. It has one
-    /// sample.
-    pub fn set_recorded(&mut self, input: u32, value: f64) {
-        self.loops.is_solved = false;
-        self.registers.registers[input as usize] = value;
-        match self.events.given.iter_mut().find(|(known, _)| *known == input) {
+    /// Gives an input a value that holds until another one is given.
+    pub(super) fn give(&mut self, registers: &mut Memory, input: u32, value: f64) {
+        registers[input as usize] = value;
+        match self.given.iter_mut().find(|(known, _)| *known == input) {
             Some((_, known)) => *known = value,
-            None => self.events.given.push((input, value)),
+            None => self.given.push((input, value)),
         }
     }
 
     /// Advances to the segments that begin at `t`; whether an input jumps there, or its derivative
     /// where equations contain it.
-    pub(super) fn advance_recordings(&mut self, t: f64) -> bool {
-        let program = self.program.clone();
+    pub(super) fn advance(&mut self, program: &Program, registers: &mut Memory, t: f64) -> bool {
         let mut jumps = false;
         for (at, recording) in program.sorted.dae.events.recordings.iter().enumerate() {
-            let before = self.events.knots_passed[at];
+            let before = self.knots_passed[at];
             let passed = recording.passed(before, t);
             if passed > before {
-                self.events.knots_passed[at] = passed;
-                self.set_segment(recording, passed);
+                self.knots_passed[at] = passed;
+                recording.load(registers, passed);
                 jumps |= program.reads_rates || recording.jumps((before, passed));
             }
         }
@@ -51,42 +61,22 @@ impl System {
     }
 
     /// The next knot of each recording.
-    pub(super) fn next_knots(&self) -> impl Iterator<Item = f64> {
-        let recordings = self.program.sorted.dae.events.recordings.iter();
-        let pairs = recordings.zip(&self.events.knots_passed);
+    pub(super) fn next_knots(&self, program: &Program) -> impl Iterator<Item = f64> {
+        let recordings = program.sorted.dae.events.recordings.iter();
+        let pairs = recordings.zip(&self.knots_passed);
         pairs.filter_map(|(recording, passed)| recording.knots.get(*passed).copied())
     }
+}
 
-    /// The mean distance of all knots between two times.
-    pub(super) fn distance_of_knots(&self, start: f64, stop: f64) -> Option<f64> {
-        let recordings = self.program.sorted.dae.events.recordings.iter();
-        let within = |recording: &Recording| {
-            let up_to = |time: f64| recording.knots.partition_point(|knot| *knot < time);
-            up_to(stop) - up_to(start)
-        };
-        let knots: usize = recordings.map(within).sum();
-        (knots > 0).then(|| (stop - start) / knots as f64)
-    }
-
-    /// Values, rates and the time they count from, where so many knots have been passed.
-    fn set_segment(&mut self, recording: &Recording, passed: usize) {
-        let (first, knots) = (passed.saturating_sub(1), &recording.knots);
-        if let Some(since) = recording.since {
-            self.registers[since.0 as usize] = knots[first];
-        }
-        for track in &recording.tracks {
-            self.registers[track.value.0 as usize] = track.samples[first];
-            if let Some(rate) = track.rate {
-                let next = (passed > 0 && passed < knots.len()).then_some(passed);
-                let rise = |next: usize| {
-                    let length = knots[next] - knots[first];
-                    let rise = track.samples[next] - track.samples[first];
-                    if length > 0.0 { rise / length } else { 0.0 }
-                };
-                self.registers[rate.0 as usize] = next.map_or(0.0, rise);
-            }
-        }
-    }
+/// The mean distance of all knots between two times.
+pub(super) fn distance_of_knots(program: &Program, start: f64, stop: f64) -> Option<f64> {
+    let recordings = program.sorted.dae.events.recordings.iter();
+    let within = |recording: &Recording| {
+        let up_to = |time: f64| recording.knots.partition_point(|knot| *knot < time);
+        up_to(stop) - up_to(start)
+    };
+    let knots: usize = recordings.map(within).sum();
+    (knots > 0).then(|| (stop - start) / knots as f64)
 }
 
 impl Recording {
@@ -108,5 +98,25 @@ impl Recording {
             true => track.samples[first] != track.samples[passed - 1],
             false => track.samples[before..passed].windows(2).any(|pair| pair[0] != pair[1]),
         })
+    }
+
+    /// Values, rates and the time they count from, where so many knots have been passed.
+    fn load(&self, registers: &mut Memory, passed: usize) {
+        let (first, knots) = (passed.saturating_sub(1), &self.knots);
+        if let Some(since) = self.since {
+            registers[since.0 as usize] = knots[first];
+        }
+        for track in &self.tracks {
+            registers[track.value.0 as usize] = track.samples[first];
+            if let Some(rate) = track.rate {
+                let next = (passed > 0 && passed < knots.len()).then_some(passed);
+                let rise = |next: usize| {
+                    let length = knots[next] - knots[first];
+                    let rise = track.samples[next] - track.samples[first];
+                    if length > 0.0 { rise / length } else { 0.0 }
+                };
+                registers[rate.0 as usize] = next.map_or(0.0, rise);
+            }
+        }
     }
 }

@@ -157,10 +157,6 @@ impl DelayState {
 pub(super) struct EventState {
     /// The samples.
     pub(super) clocks: Vec<Clock>,
-    /// How many knots of each recording of inputs have been passed.
-    pub(super) knots_passed: Vec<usize>,
-    /// Values of recorded inputs that are set from outside, by their registers.
-    pub(super) given: Vec<(u32, f64)>,
     /// Values that discrete variables had before an event.
     pub(super) before: Vec<f64>,
     /// Values that variables of discrete loops had in the pass before.
@@ -175,8 +171,6 @@ impl EventState {
     pub(super) fn new(program: &Program) -> EventState {
         EventState {
             clocks: Vec::with_capacity(program.events.samples.len()),
-            knots_passed: vec![0; program.sorted.dae.events.recordings.len()],
-            given: Vec::new(),
             before: vec![0.0; program.events.discrete.len()],
             previous_iterate: vec![0.0; program.events.iterated.len()],
             sampled: false,

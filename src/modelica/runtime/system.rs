@@ -4,6 +4,7 @@ use super::execution::run_assignments;
 use super::instants::Stage;
 use super::newton::{Attempts, LoopSolver};
 use super::partial_observation::OtherVariables;
+use super::recordings::RecordedInputs;
 use super::sensitivity_state::Sensitivity;
 use super::state::{
     DelayState, EventState, GivenStart, LoopState, MessageState, OutputState, RelationState,
@@ -42,6 +43,7 @@ pub struct System {
     pub(super) loops: LoopState,
     pub(super) delays: DelayState,
     pub(super) events: EventState,
+    pub(super) inputs: RecordedInputs,
     pub(super) outputs: OutputState,
     pub(super) messages: MessageState,
     /// What simulations begin with.
@@ -70,6 +72,7 @@ impl System {
             loops: LoopState { linear: program.linear_unknowns(), ..LoopState::default() },
             delays: DelayState::new(&program),
             events: EventState::new(&program),
+            inputs: RecordedInputs::new(&program),
             outputs: OutputState::new(&program),
             messages: MessageState::default(),
             given_start: None,
@@ -115,6 +118,13 @@ impl System {
     /// Number of iteration variables that the integrator holds.
     pub(super) fn n_held_iteration(&self) -> usize {
         if self.loops.solves_loops { 0 } else { self.program.continuous.iteration.len() }
+    }
+
+    /// Gives a recorded input, by its number from [`Program::recorded_input`], a value that holds from the
+    /// next event, or the start, until another one is given. It has one sample.
+    pub fn set_recorded(&mut self, input: u32, value: f64) {
+        self.loops.is_solved = false;
+        self.inputs.give(&mut self.registers, input, value);
     }
 
     /// Whether delays read at `t` what has been recorded.
