@@ -3,6 +3,7 @@
 //! read.
 
 mod exceptions;
+mod layers;
 mod sources;
 
 use exceptions::{CYCLES, LONG_FUNCTIONS};
