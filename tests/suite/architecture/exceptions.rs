@@ -5,6 +5,26 @@
 /// files together.
 pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[];
 
+const BY_EXPRESSION: &str = "what an expression is follows from the expressions in it";
+
+/// Types whose methods call each other over more than two files: over how many, and why.
+pub(super) const CALL_CYCLES: &[(&str, usize, &str)] = &[
+    (
+        "Instantiation",
+        15,
+        "a member is made when an expression first needs it, and its sizes need expressions",
+    ),
+    ("Lowering", 12, BY_EXPRESSION),
+    ("Evaluator", 11, BY_EXPRESSION),
+    ("Builder", 3, BY_EXPRESSION),
+    ("Body", 6, BY_EXPRESSION),
+    ("NameCheck", 5, "what a class declares holds classes"),
+    ("Classes", 5, "a base class is looked up in the classes around, which have base classes"),
+    ("Instances", 3, "a function is compiled together with its derivatives and inverses"),
+    ("OccurrenceSearch", 3, "classes hold expressions, which hold modifications of classes"),
+    ("Library", 4, "classes are read when they are first asked for"),
+];
+
 const PER_CASE: &str = "one arm for every case of the enumeration, each short";
 const IN_ORDER: &str = "steps in their order that share many values";
 

@@ -3,10 +3,9 @@
 //! read.
 
 mod exceptions;
-mod layers;
 mod sources;
 
-use exceptions::{CYCLES, LONG_FUNCTIONS};
+use exceptions::{CALL_CYCLES, CYCLES, LONG_FUNCTIONS};
 use gapilib::internals::graph::strongly_connected;
 use sources::{Modules, Source, sources};
 use std::collections::{BTreeMap, BTreeSet};
@@ -234,6 +233,8 @@ const MOST_NAMED: usize = 6;
 /// Files of a cycle that are one concept, and files in all cycles.
 const MOST_IN_CYCLES: usize = 14;
 const LARGEST_CYCLE: usize = 3;
+/// Files whose methods of one type call each other.
+const LARGEST_CALL_CYCLE: usize = 2;
 
 fn all() -> &'static [Source] {
     static SOURCES: OnceLock<Vec<Source>> = OnceLock::new();
@@ -335,6 +336,49 @@ fn files_of_a_cycle_are_one_concept() {
 
 /// The functions and operators of the language have one home, `functions`: a file of another folder
 /// that names many of them is a second list.
+/// The methods of a type may lie in several files; those of few of them call each other. A call counts
+/// where one file alone has a method of this name.
+#[test]
+fn methods_of_a_type_lie_in_layers() {
+    let mut files: BTreeMap<(&str, &str), BTreeSet<usize>> = BTreeMap::new();
+    let mut homes: BTreeMap<(&str, &str, &str), BTreeSet<usize>> = BTreeMap::new();
+    let folder = |at: usize| all()[at].module.first().map_or("", String::as_str);
+    for (at, source) in all().iter().enumerate() {
+        for (of, method) in &source.methods {
+            files.entry((folder(at), of)).or_default().insert(at);
+            homes.entry((folder(at), of, method)).or_default().insert(at);
+        }
+    }
+    let mut found: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut wrong = Vec::new();
+    for ((owner, of), files) in files {
+        let files: Vec<usize> = files.into_iter().collect();
+        let called = |at: usize| {
+            let own = all()[at].own_calls.iter().filter(|(called, _)| called == of);
+            let home = own.filter_map(|(_, method)| homes.get(&(owner, of, method.as_str())));
+            let only = home.filter(|home| home.len() == 1 && !home.contains(&at)).flatten();
+            only.filter_map(|home| files.binary_search(home).ok()).collect::<Vec<usize>>()
+        };
+        let edges: Vec<Vec<usize>> = files.iter().map(|at| called(*at)).collect();
+        for cycle in strongly_connected(files.len(), |at| &edges[at]) {
+            if cycle.len() <= LARGEST_CALL_CYCLE {
+                continue;
+            }
+            let largest = found.entry(of).or_default();
+            *largest = cycle.len().max(*largest);
+            let known = CALL_CYCLES.iter().find(|known| known.0 == of).map_or(0, |known| known.1);
+            if cycle.len() != known {
+                let names = cycle.iter().map(|at| all()[files[*at]].module.join("::"));
+                let names = names.collect::<Vec<_>>().join(", ");
+                wrong.push(format!("`{of}`: {} files, known {known}: {names}", cycle.len()));
+            }
+        }
+    }
+    let gone = CALL_CYCLES.iter().filter(|known| !found.contains_key(known.0));
+    wrong.extend(gone.map(|known| format!("`{}` has no large cycle any more", known.0)));
+    passes(&wrong);
+}
+
 #[test]
 fn functions_of_the_language_are_listed_once() {
     let known: Vec<String> = gapilib::internals::functions::names()

@@ -35,6 +35,10 @@ pub(super) struct Source {
     exports: BTreeMap<String, Names>,
     /// Functions with their lengths in lines, without those of tests.
     pub(super) functions: Vec<(String, usize)>,
+    /// Methods, and the calls of methods on `self` and on its fields, by the type of the `impl` in which
+    /// they stand.
+    pub(super) methods: Vec<(String, String)>,
+    pub(super) own_calls: BTreeSet<(String, String)>,
     /// Constants that are tables: slices that other modules see.
     pub(super) tables: Vec<String>,
     /// All identifiers of its code.
@@ -139,6 +143,7 @@ fn read(root: &Path, path: &Path, modules: &BTreeSet<(String, String)>) -> Sourc
         || root.join(path.with_extension("")).is_dir();
     let mut reader = Reader {
         here: module.clone(),
+        implemented: None,
         owner,
         modules,
         source: Source {
@@ -148,6 +153,8 @@ fn read(root: &Path, path: &Path, modules: &BTreeSet<(String, String)>) -> Sourc
             named: Vec::new(),
             exports: BTreeMap::new(),
             functions: Vec::new(),
+            methods: Vec::new(),
+            own_calls: BTreeSet::new(),
             tables: Vec::new(),
             identifiers: BTreeMap::new(),
             outside: Vec::new(),
@@ -162,6 +169,8 @@ fn read(root: &Path, path: &Path, modules: &BTreeSet<(String, String)>) -> Sourc
 struct Reader<'a> {
     /// The module at hand, inline modules included.
     here: Names,
+    /// The type of the `impl` at hand.
+    implemented: Option<String>,
     /// The crate.
     owner: String,
     /// Crates with the modules that lie in them.
@@ -262,6 +271,28 @@ impl Reader<'_> {
     }
 }
 
+/// The last name of a type, references left out.
+fn name_of(of: &syn::Type) -> String {
+    match of {
+        syn::Type::Reference(inner) => name_of(&inner.elem),
+        syn::Type::Path(path) => {
+            path.path.segments.last().map(|part| part.ident.to_string()).unwrap_or_default()
+        }
+        _ => String::new(),
+    }
+}
+
+/// Whether it is `self` or a field of it.
+fn is_own(receiver: &syn::Expr) -> bool {
+    match receiver {
+        syn::Expr::Path(path) => path.path.is_ident("self"),
+        syn::Expr::Field(field) => {
+            matches!(&*field.base, syn::Expr::Path(path) if path.path.is_ident("self"))
+        }
+        _ => false,
+    }
+}
+
 /// The leaves of a `use`, and the name that each has here.
 fn leaves(tree: &UseTree, before: &[String], found: &mut Vec<(Names, String)>) {
     let with = |name: String| before.iter().cloned().chain([name]).collect::<Names>();
@@ -315,10 +346,25 @@ impl<'ast> Visit<'ast> for Reader<'_> {
         visit::visit_item_fn(self, function);
     }
 
+    fn visit_item_impl(&mut self, item: &'ast syn::ItemImpl) {
+        let outer = self.implemented.replace(name_of(&item.self_ty));
+        visit::visit_item_impl(self, item);
+        self.implemented = outer;
+    }
+
+    fn visit_expr_method_call(&mut self, call: &'ast syn::ExprMethodCall) {
+        if let (Some(of), true) = (&self.implemented, is_own(&call.receiver)) {
+            self.source.own_calls.insert((of.clone(), call.method.to_string()));
+        }
+        visit::visit_expr_method_call(self, call);
+    }
+
     fn visit_impl_item_fn(&mut self, function: &'ast ImplItemFn) {
         if is_test(&function.attrs) {
             return;
         }
+        let method = self.implemented.clone().map(|of| (of, function.sig.ident.to_string()));
+        self.source.methods.extend(method);
         let from = function.sig.span().start();
         self.functions(&function.sig.ident.to_string(), from, function.block.span().end());
         visit::visit_impl_item_fn(self, function);
