@@ -3,33 +3,22 @@
 //! have one type (MLS §3.4, §3.5, §4.9.5, §8.3.4, §8.3.7). Of a model, bindings and equations
 //! are left to flattening, which knows all types and sizes.
 
+use super::declared_types::{CheckedType, DeclaredTypes, kind_of};
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
-use crate::flatten::lookup::types::Predefined;
 use crate::functions::{self, Builtin};
-use crate::inference::{self, ElementType, Elementary, TypesOfNames};
-use crate::name::{Ident, Name};
+use crate::inference;
+use crate::name::Ident;
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
+    BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
     Expression, ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
 };
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,
 };
-
-/// The type of an expression.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum CheckedType {
-    /// Real or Integer.
-    Number,
-    Boolean,
-    String,
-    Enumeration(ClassId),
-}
 
 /// Checks the conditions and relations that a class itself writes.
 pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
@@ -241,81 +230,6 @@ impl TypeCheck<'_, '_> {
     }
 }
 
-/// Whether an expression in a class is a number, as far as the class tells.
-pub(crate) fn is_number(class: Scope<'_>, e: &Expression) -> bool {
-    DeclaredTypes { class, loops: Vec::new() }.type_of(e) == Some(CheckedType::Number)
-}
-
-/// What a class tells of the types of names.
-struct DeclaredTypes<'a> {
-    class: Scope<'a>,
-    /// The loop variables met; what they are is not looked at.
-    loops: Vec<Ident>,
-}
-
-impl DeclaredTypes<'_> {
-    /// The type of an expression, where the class tells.
-    fn type_of(&self, expression: &Expression) -> Option<CheckedType> {
-        inference::type_of(&mut &*self, expression)
-    }
-
-    fn kind_of_reference(&self, reference: &ComponentReference) -> Option<CheckedType> {
-        let first = reference.parts[0].name;
-        if !reference.global && self.loops.contains(&first) {
-            return None;
-        }
-        if !reference.global && super::names::is_component(self.class, first) {
-            return self.class.path(reference)?.last().and_then(kind_of);
-        }
-        self.literal(reference)
-    }
-
-    /// The enumeration of a literal `E.a`.
-    fn literal(&self, reference: &ComponentReference) -> Option<CheckedType> {
-        let parts: Vec<Ident> = reference.parts.iter().map(|part| part.name).collect();
-        let (last, path) = parts.split_last()?;
-        let name = Name { global: reference.global, parts: path.to_vec() };
-        let enumeration = self.class.class_named(&name)?.enumeration()?;
-        let ClassSpecifier::Enumeration(literals) = &enumeration.definition().specifier else {
-            return None;
-        };
-        let is_literal = literals.literals.iter().flatten().any(|one| one.name.node == *last);
-        is_literal.then_some(CheckedType::Enumeration(enumeration.class))
-    }
-}
-
-impl ElementType for CheckedType {
-    fn elementary(which: Elementary) -> Option<CheckedType> {
-        match which {
-            Elementary::Real | Elementary::Integer => Some(CheckedType::Number),
-            Elementary::Boolean => Some(CheckedType::Boolean),
-            Elementary::String => Some(CheckedType::String),
-            Elementary::Clock => None,
-        }
-    }
-}
-
-impl TypesOfNames for &DeclaredTypes<'_> {
-    type Type = CheckedType;
-
-    fn of_reference(&mut self, reference: &ComponentReference) -> Option<CheckedType> {
-        self.kind_of_reference(reference)
-    }
-
-    /// Those of the class are not looked at, nor is a function that hides one of the language.
-    fn of_function(
-        &mut self,
-        function: &ComponentReference,
-        _: &Arguments,
-    ) -> Option<Option<CheckedType>> {
-        let is_of_language = !function.global
-            && function
-                .as_ident()
-                .is_some_and(|name| self.class.class_named(&name.into()).is_none());
-        (!is_of_language).then_some(None)
-    }
-}
-
 impl Visit for TypeCheck<'_, '_> {
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
@@ -374,30 +288,5 @@ impl Visit for TypeCheck<'_, '_> {
             _ => {}
         }
         walk_statement(self, statement);
-    }
-}
-
-/// The type that a component, or its elements, is declared of; none if it can be redeclared.
-fn kind_of(component: &Component<'_>) -> Option<CheckedType> {
-    let prefixes = component.clause.prefixes;
-    if prefixes.replaceable || prefixes.outer {
-        return None;
-    }
-    let (predefined, class) = match component.meaning()? {
-        Type::Predefined(predefined) => (Some(predefined), None),
-        Type::Class(class) => {
-            let class = component.owner.of(class);
-            if class.is_replaceable() {
-                return None;
-            }
-            (class.predefined(), class.enumeration())
-        }
-    };
-    match (predefined, class) {
-        (Some(Predefined::Real | Predefined::Integer), _) => Some(CheckedType::Number),
-        (Some(Predefined::Boolean), _) => Some(CheckedType::Boolean),
-        (Some(Predefined::String), _) => Some(CheckedType::String),
-        (None, Some(enumeration)) => Some(CheckedType::Enumeration(enumeration.class)),
-        _ => None,
     }
 }

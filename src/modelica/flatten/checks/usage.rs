@@ -2,7 +2,7 @@
 //! ask for arguments of a kind (MLS §3.6.7, §3.7, §4.4.5, §12.2, §15.2).
 
 use super::scope::{Component, Scope};
-use super::types::is_number;
+use super::declared_types::is_number;
 use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
