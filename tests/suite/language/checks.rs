@@ -576,3 +576,48 @@ fn operands_have_the_types_of_their_operators() {
         Real x[2, 2] = {{1, 2}, {3, 4}}; Real y[2] = 2*x[:, 1] + x[2, :]; end M;",
     );
 }
+
+/// Arguments are converted and spread over calls as the language says (MLS §10.6.13, §12.4.6).
+#[test]
+fn arguments_have_the_types_of_their_inputs() {
+    let right = include_str!("../../data/models/checks_arguments.mo");
+    if let Err(errors) = flatten(&library(right), &Name::parse("Arguments.M"), &[]) {
+        panic!("{errors:?}");
+    }
+    let function = "type E = enumeration(a, b); function f input Real x; input Integer n = 1; \
+                    output Real y = n*x; end f; ";
+    let (types, twice) = ("type-mismatch", "wrong-arguments");
+    for wrong in
+        ["f(true)", "f(1, 2.5)", "f(1, n = time)", "f(1, E.a)", "f(\"1\")", "sum(f({true}))"]
+    {
+        refused(&format!("{function} model M Real y = {wrong}; end M;"), types);
+    }
+    for wrong in ["f(1, x = 2)", "f(1, 2, n = 3)", "f(n = 1, x = 2, n = 3)"] {
+        refused(&format!("{function} model M Real y = {wrong}; end M;"), twice);
+    }
+}
+
+/// An Integer has no Real value, whatever gives it (MLS §10.6.13).
+#[test]
+fn integers_hold_no_reals() {
+    let code = "type-mismatch";
+    let pair = "function f output Real a = 1.5; output Real b = 2; end f;";
+    refused("model M Integer k; algorithm k := 3/2; end M;", code);
+    refused("model M Integer k(start = 1.5); equation k = 1; end M;", code);
+    refused(
+        "model M Integer k(start = 0, fixed = true);
+        equation when time > 0.5 then k = pre(k) + 0.5; end when; end M;",
+        code,
+    );
+    refused(&format!("{pair} model M Integer i; Real y; algorithm (i, y) := f(); end M;"), code);
+    refused(
+        "function f input Integer n; output Integer m; algorithm m := n/2; end f;
+        model M Real y = f(3); end M;",
+        code,
+    );
+    refused(
+        "function f input Real v[:]; output Real y = m; protected Integer m = size(v, 1)/2; end f;
+        model M Real y = f({1, 2, 3}); end M;",
+        code,
+    );
+}

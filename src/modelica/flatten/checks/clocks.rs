@@ -1,7 +1,6 @@
 //! Which expressions are clocks, as far as a class tells by itself (MLS §16.3).
 
 use super::scope::Scope;
-use super::usage::predefined;
 use crate::flatten::lookup::types::Predefined;
 use crate::functions::{self, Clocked, Operator, Temporal};
 use crate::syntax::ast::{Expression, ExpressionKind};
@@ -11,7 +10,7 @@ pub(crate) fn is_clock(class: Scope<'_>, e: &Expression) -> bool {
     match &e.kind {
         ExpressionKind::Reference(reference) => {
             let component = class.component_at(reference);
-            component.and_then(|c| predefined(&c)) == Some(Predefined::Clock)
+            component.and_then(|c| c.predefined()) == Some(Predefined::Clock)
         }
         ExpressionKind::Call { function, arguments } => {
             let [name] = function.parts.as_slice() else { return false };

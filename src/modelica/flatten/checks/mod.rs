@@ -6,6 +6,7 @@
 //! finds those of what it makes.
 
 mod access;
+mod arguments;
 mod behaviour;
 mod clocks;
 mod compatibility;

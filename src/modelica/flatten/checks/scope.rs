@@ -248,6 +248,14 @@ impl<'a> Component<'a> {
         self.owner.class_named(&self.clause.type_specifier.name)
     }
 
+    /// The predefined type that it is of.
+    pub(crate) fn predefined(&self) -> Option<Predefined> {
+        match self.meaning()? {
+            Type::Predefined(predefined) => Some(predefined),
+            Type::Class(class) => self.owner.of(class).predefined(),
+        }
+    }
+
     /// Whether it, or its type, is declared constant or parameter.
     pub(crate) fn is_fixed(&self) -> bool {
         let fixed = |prefixes: &TypePrefixes| {

@@ -1,8 +1,8 @@
 //! What expressions may say in which class: `time`, conditional components and the operators that
 //! ask for arguments of a kind (MLS §3.6.7, §3.7, §4.4.5, §12.2, §15.2).
 
-use super::scope::{Component, Scope};
 use super::declared_types::is_number;
+use super::scope::{Component, Scope};
 use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -93,7 +93,7 @@ impl<'a> UsageCheck<'a, '_> {
     fn derived(&self, argument: &Expression) -> Option<Diagnostic> {
         let component = self.component(argument)?;
         let name = component.name();
-        let base = predefined(&component)?;
+        let base = component.predefined()?;
         let reason = if base != Predefined::Real {
             "is not Real"
         } else if component.clause.type_prefixes.variability == Some(VariabilityPrefix::Discrete) {
@@ -282,12 +282,5 @@ fn number(expression: &Expression) -> Option<f64> {
         ExpressionKind::Real(value) => Some(value),
         ExpressionKind::Integer(value) => Some(value as f64),
         _ => None,
-    }
-}
-
-pub(crate) fn predefined(component: &Component<'_>) -> Option<Predefined> {
-    match component.meaning()? {
-        Type::Predefined(predefined) => Some(predefined),
-        Type::Class(class) => component.owner.of(class).predefined(),
     }
 }

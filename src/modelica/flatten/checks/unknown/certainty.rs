@@ -5,6 +5,7 @@
 use crate::flatten::checks::scope::Scope;
 use crate::flatten::declared::Declared;
 use crate::flatten::library::{BaseProperty, ClassId, Library};
+use crate::name::Name;
 use crate::syntax::ast::{ClassSpecifier, Restriction};
 
 impl<'a> Scope<'a> {
@@ -12,6 +13,16 @@ impl<'a> Scope<'a> {
     /// [inherits](Scope::inherits_open) such.
     pub(crate) fn is_open(self) -> bool {
         self.library.is_replaceable(self.class) || self.inherits_open()
+    }
+
+    /// The class that the name of a function means in it, if no redeclaration can replace it and all
+    /// that it inherits is known.
+    pub(crate) fn certain_class(self, name: &Name) -> Option<Scope<'a>> {
+        let parts = self.library.parts_of_reference(Some(self.class), name);
+        match parts.last().copied().flatten()? {
+            Declared::Class(class) if is_certain(self.library, &parts) => Some(self.of(class)),
+            _ => None,
+        }
     }
 
     /// Whether it, or a class that it extends, is an expandable connector, or extends an unknown or a

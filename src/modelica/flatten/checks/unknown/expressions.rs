@@ -2,7 +2,6 @@
 
 use super::NameCheck;
 use crate::flatten::checks::scope::Component;
-use crate::flatten::checks::usage::predefined;
 use crate::flatten::declared::Declared;
 use crate::flatten::lookup::types::Predefined;
 use crate::flatten::unknown;
@@ -73,7 +72,7 @@ impl NameCheck<'_, '_> {
 fn is_variable(component: &Component<'_>) -> bool {
     use Predefined::{AssertionLevel, Boolean, Integer, Real, StateSelect, String};
     let is_enumeration = || component.class().is_some_and(|class| class.is_enumeration());
-    match predefined(component) {
+    match component.predefined() {
         Some(Real | Integer | Boolean | String | StateSelect | AssertionLevel) => true,
         Some(Predefined::ExternalObject | Predefined::Clock) => false,
         None => is_enumeration(),

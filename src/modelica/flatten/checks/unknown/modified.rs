@@ -2,7 +2,6 @@
 
 use super::certainty::is_certain;
 use crate::flatten::checks::scope::{Component, Scope};
-use crate::flatten::checks::usage;
 use crate::flatten::declared::Declared;
 use crate::flatten::library::Library;
 use crate::flatten::lookup::types::Predefined;
@@ -54,7 +53,7 @@ impl<'a> Modified<'a> {
     }
 
     fn of_component(component: &Component<'a>, is_certain: bool) -> Modified<'a> {
-        let modified = match usage::predefined(component) {
+        let modified = match component.predefined() {
             Some(predefined) => Modified::of_predefined(predefined, component.name()),
             None => component
                 .class()
