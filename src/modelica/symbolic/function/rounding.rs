@@ -48,7 +48,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             contains: |x| x[0].abs() <= LARGEST_INTEGER,
             words: "the result is beyond 9007199254740991, up to which models have exact Integers",
         }),
-        result: ResultType::Integer,
+        result: ResultType::AsArguments,
         unit: UnitRule::As(0),
         section: "MLS §10.6",
         ..real(INTEGER_ARITHMETIC, Value::Unary(exact), |pool, _, _| pool.constant(1.0))
