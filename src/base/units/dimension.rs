@@ -9,9 +9,14 @@ const SYMBOLS: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
 /// What a unit measures: exponents of kg, m, s, A, K, mol, cd and rad; factors such as that of `kPa`
 /// do not matter. Radians are numbers where dimensions are compared or printed (SI brochure §2.3.4);
-/// their exponent distinguishes rad/s from Hz in the definitions of units that FMI has.
+/// their exponent distinguishes rad/s from Hz in the definitions of units that FMI has. Neither are
+/// revolutions compared, whose exponent tells whether a unit counts them, as rpm and Hz do.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Dimension([i32; 8]);
+pub struct Dimension([i32; 9]);
+
+/// Where the exponents of radians and of revolutions are.
+const RADIANS: usize = 7;
+const REVOLUTIONS: usize = 8;
 
 impl PartialEq for Dimension {
     fn eq(&self, other: &Dimension) -> bool {
@@ -23,11 +28,11 @@ impl Eq for Dimension {}
 
 impl Dimension {
     /// That of a pure number.
-    pub(crate) const ONE: Dimension = Dimension([0; 8]);
+    pub(crate) const ONE: Dimension = Dimension([0; 9]);
 
     /// The dimension with whole exponents.
     pub const fn new(exponents: [i32; 8]) -> Dimension {
-        let mut parts = [0; 8];
+        let mut parts = [0; 9];
         let mut at = 0;
         while at < 8 {
             parts[at] = exponents[at] * PARTS;
@@ -38,8 +43,24 @@ impl Dimension {
 
     /// The exponents of kg, m, s, A, K, mol, cd and rad; `None` where one is broken.
     pub fn exponents(self) -> Option<[i32; 8]> {
-        let is_whole = self.0.iter().all(|parts| parts % PARTS == 0);
-        is_whole.then(|| self.0.map(|parts| parts / PARTS))
+        let mut own = [0; 8];
+        own.copy_from_slice(&self.0[..REVOLUTIONS]);
+        let is_whole = own.iter().all(|parts| parts % PARTS == 0);
+        is_whole.then(|| own.map(|parts| parts / PARTS))
+    }
+
+    /// The same for a unit that counts revolutions.
+    pub(super) const fn of_revolutions(self) -> Dimension {
+        let mut parts = self.0;
+        parts[REVOLUTIONS] = PARTS;
+        Dimension(parts)
+    }
+
+    /// The exponents of radians and of revolutions; `None` where one is broken.
+    pub(super) fn of_angles(self) -> Option<[i32; 2]> {
+        let [radians, revolutions] = [self.0[RADIANS], self.0[REVOLUTIONS]];
+        let is_whole = radians % PARTS == 0 && revolutions % PARTS == 0;
+        is_whole.then_some([radians / PARTS, revolutions / PARTS])
     }
 
     /// The sum of the exponents.
@@ -54,7 +75,7 @@ impl Dimension {
 
     /// The power; `None` if an exponent is not a multiple of 1/60.
     pub fn power(self, exponent: f64) -> Option<Dimension> {
-        let mut out = [0; 8];
+        let mut out = [0; 9];
         for (out, part) in out.iter_mut().zip(self.0) {
             let value = f64::from(part) * exponent;
             if value.fract() != 0.0 || value.abs() > 1e6 {
@@ -66,7 +87,7 @@ impl Dimension {
     }
 
     fn zip(self, other: Dimension, f: fn(i32, i32) -> Option<i32>) -> Option<Dimension> {
-        let mut out = [0; 8];
+        let mut out = [0; 9];
         for (at, out) in out.iter_mut().enumerate() {
             *out = f(self.0[at], other.0[at])?;
         }

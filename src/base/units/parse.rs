@@ -55,6 +55,8 @@ const PLAIN: &[Symbol] = &[
     ("rev", [0, 0, 0, 0, 0, 0, 0, 1], 2.0 * PI),
     ("rpm", [0, 0, -1, 0, 0, 0, 0, 1], PI / 30.0),
 ];
+/// Those that count revolutions or cycles: Hz without radians, the others with 2 pi of them.
+const OF_REVOLUTIONS: [&str; 3] = ["Hz", "rev", "rpm"];
 /// Zeros of the scales of temperature, in kelvin.
 const OFFSETS: &[(&str, f64)] = &[("degC", 273.15), ("degF", 459.67 * 5.0 / 9.0)];
 const PREFIXES: &[(&str, f64)] = &[
@@ -160,7 +162,10 @@ impl Reader<'_> {
 fn of_symbol(symbol: &str) -> Option<Unit> {
     let known = |list: &[Symbol], symbol: &str| {
         let (_, exponents, factor) = list.iter().find(|(name, ..)| *name == symbol)?;
-        Some(Unit { dimension: Dimension::new(*exponents), factor: *factor, offset: 0.0 })
+        let plain = Dimension::new(*exponents);
+        let dimension =
+            if OF_REVOLUTIONS.contains(&symbol) { plain.of_revolutions() } else { plain };
+        Some(Unit { dimension, factor: *factor, offset: 0.0 })
     };
     known(PREFIXED, symbol).or_else(|| known(PLAIN, symbol)).or_else(|| {
         let split = |(prefix, factor): &(&str, f64)| Some((symbol.strip_prefix(prefix)?, *factor));

@@ -42,13 +42,27 @@ const WORDS: &[(&str, &str)] = &[
     ("ah", "A.h"),
     ("mah", "mA.h"),
     ("sccm", "cm3/min"),
+    ("msec", "ms"),
+];
+
+/// Parts of a whole. `ppt` is not among them: it stands for 1e-12 and for 1e-3.
+const PARTS: &[(&str, f64)] = &[
+    ("%", 1e-2),
+    ("‰", 1e-3),
+    ("ppm", 1e-6),
+    ("ppmv", 1e-6),
+    ("ppmw", 1e-6),
+    ("ppb", 1e-9),
+    ("ppbv", 1e-9),
+    ("ppbw", 1e-9),
 ];
 
 /// A unit as a laboratory writes it; `None` where it is not known.
 pub fn written(text: &str) -> Option<Unit> {
     let text = text.trim();
-    if text == "%" {
-        return Some(Unit { factor: 0.01, ..Unit::ONE });
+    let lower = text.to_lowercase();
+    if let Some((_, factor)) = PARTS.iter().find(|(name, _)| *name == lower) {
+        return Some(Unit { factor: *factor, ..Unit::ONE });
     }
     if text == "-" {
         return Some(Unit::ONE);
@@ -99,6 +113,14 @@ fn quotients_joined(text: String) -> String {
         return text;
     }
     format!("{first}/({})", rest.join("."))
+}
+
+/// The unit that a name ends in: `mV` in `U_mV`, `minutes` in `Elapsed minutes`. A guess, for a
+/// message only.
+pub fn suggested(name: &str) -> Option<&str> {
+    let (front, unit) = name.trim().rsplit_once(['_', ' '])?;
+    let has_name = front.chars().any(char::is_alphabetic);
+    (has_name && !["-", "1"].contains(&unit) && written(unit).is_some()).then_some(unit)
 }
 
 /// The unit for a message: as written, or words where there is none.

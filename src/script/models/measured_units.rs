@@ -89,11 +89,13 @@ impl Session {
         model: &str,
         variable: (&Quantity, bool),
     ) -> Option<Vec<f64>> {
-        let Mismatch { units, conversion } = self.mismatch(values, model, variable)?;
+        let Mismatch { units, conversion, are_angles } = self.mismatch(values, model, variable)?;
         let Some(conversion) = conversion else {
-            self.note_units(format!(
-                "{units}, a different quantity: the numbers are compared without conversion"
-            ));
+            let why = match are_angles {
+                true => ", one may count revolutions and the other radians",
+                false => ", a different quantity",
+            };
+            self.note_units(format!("{units}{why}: the numbers are compared without conversion"));
             return None;
         };
         self.note_units(format!(
@@ -106,7 +108,8 @@ impl Session {
     /// Notes it if a script has compared these values by itself, although they are a measured column
     /// in another unit than that of the variable.
     pub(crate) fn compared(&mut self, values: &[f64], model: &str, variable: (&Quantity, bool)) {
-        let Some(Mismatch { units, conversion }) = self.mismatch(values, model, variable) else {
+        let Some(Mismatch { units, conversion, .. }) = self.mismatch(values, model, variable)
+        else {
             return;
         };
         let remedy = conversion.map_or_else(String::new, |conversion| {
@@ -144,6 +147,8 @@ struct Mismatch {
     units: String,
     /// `None` between different quantities.
     conversion: Option<Conversion>,
+    /// Whether one may count revolutions and the other radians.
+    are_angles: bool,
 }
 
 /// `None` where both units mean the same, or one of them is not known.
@@ -166,7 +171,8 @@ fn mismatch(
         variable.name, variable.unit
     );
     let is_needed = conversion.is_none_or(|conversion| !conversion.is_identity());
-    is_needed.then_some(Mismatch { units, conversion })
+    let are_angles = from.angles_differ(to).is_some();
+    is_needed.then_some(Mismatch { units, conversion, are_angles })
 }
 
 #[cfg(test)]

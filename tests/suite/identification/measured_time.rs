@@ -453,3 +453,94 @@ name = \"levenberg_marquardt\"
     solved.says("`rise` is converted from degF to K, times 0.555555555555556, without an offset");
     solved.says("`T` is converted from degC to K, plus 273.15");
 }
+
+/// A model whose output is a number in this unit, and a problem for its data in `d.csv`.
+fn level(unit: &str, entry: &str) -> [(&'static str, String); 2] {
+    let model = format!(
+        "model Level\n  parameter Real a = 1;\n  output Real y(unit = \"{unit}\") = a*(1 + time/4);\nend Level;\n"
+    );
+    let problem = format!(
+        "model = \"Level\"\nfiles = [\"level.mo\"]\n[parameters]\na = {{ min = -1e6, max = 1e6 }}\n\
+         [[experiment]]\ndata = \"d.csv\"\nx = {{ variable = \"time\", column = \"t\" }}\n\
+         outputs.y = {{ column = \"y\"{entry} }}\n[method]\nname = \"levenberg_marquardt\"\n"
+    );
+    [("level.mo", model), ("p.toml", problem)]
+}
+
+/// The files of a problem whose first measured value is `first` in the unit `head`.
+fn in_units(own: &str, (head, first): (&str, f64), entry: &str) -> Vec<(&'static str, String)> {
+    let rows = (0..6).map(|t| format!("{t},{}\n", first * (1.0 + f64::from(t) / 4.0)));
+    let data = format!("t [s],y [{head}]\n{}", rows.collect::<String>());
+    level(own, entry).into_iter().chain([("d.csv", data)]).collect()
+}
+
+fn borrowed<'f>(files: &'f [(&'static str, String)]) -> Vec<(&'f str, &'f str)> {
+    files.iter().map(|(name, text)| (*name, text.as_str())).collect()
+}
+
+#[test]
+fn a_revolution_is_two_pi_radians() {
+    for (own, head, first, expected) in [
+        ("Hz", "rpm", 3000.0, 50.0),
+        ("1/min", "rpm", 3000.0, 3000.0),
+        ("1/s", "rev/min", 3000.0, 50.0),
+        ("rad/s", "rpm", 3000.0, 100.0 * std::f64::consts::PI),
+        ("rev/min", "Hz", 50.0, 3000.0),
+    ] {
+        let files = in_units(own, (head, first), "");
+        Solved::of(&folder(&borrowed(&files))).is("a", expected, 1e-6);
+    }
+    for (own, head, factors) in [
+        ("rad/s", "Hz", ["factor = 6.283185307179", "factor = 1`"]),
+        ("Hz", "rad/s", ["factor = 0.1591549430918", "factor = 1`"]),
+        ("rad/s", "1/min", ["factor = 0.104719755119", "factor = 0.01666666666666"]),
+    ] {
+        let text = refused(&borrowed(&in_units(own, (head, 50.0), "")));
+        let words = ["`y` is in", "a revolution is 2 pi rad", factors[0], factors[1], "p.toml:"];
+        for words in words {
+            assert!(text.contains(words), "{own} {head}: no `{words}` in {text}");
+        }
+    }
+    let files = in_units("rad/s", ("Hz", 50.0), ", factor = 6.283185307179586");
+    Solved::of(&folder(&borrowed(&files))).is("a", 314.159_265, 1e-6);
+}
+
+#[test]
+fn parts_per_million_are_parts_of_a_whole() {
+    for (own, head, expected) in
+        [("1", "ppm", 0.003), ("%", "ppmv", 0.3), ("1", "ppb", 3e-6), ("1", "‰", 3.0)]
+    {
+        let files = in_units(own, (head, 3000.0), "");
+        let solved = Solved::of(&folder(&borrowed(&files)));
+        // The range is 12 orders of magnitude wider than the smallest value.
+        solved.is("a", expected, 1e-4);
+        solved.says(&format!("`y` is converted from {head} to {own}, times "));
+    }
+    let files = in_units("kg/m3", ("ppm", 3000.0), "");
+    let text = refused(&borrowed(&files));
+    assert!(text.contains("`y` is in kg/m3, but its column is in ppm"), "{text}");
+    let here = folder(&borrowed(&in_units("1", ("ppm", 3000.0), "")));
+    let (done, output) = gapi(here.path(), &["new", "d.csv", "--model", "level.mo"]);
+    let draft = fs::read_to_string(here.path().join("d.toml")).unwrap();
+    assert!(done && draft.contains("6750 ppm; converted to 1"), "{output}{draft}");
+}
+
+#[test]
+fn what_a_name_suggests_is_said_and_not_converted() {
+    let [model, (name, problem)] = level("V", "");
+    let problem =
+        problem.replace("\"t\"", "\"time_min\"").replace("column = \"y\"", "column = \"U_mV\"");
+    let data = "time_min,U_mV\n0,1000\n1,1250\n2,1500\n3,1750\n".to_owned();
+    let files = [model, (name, problem), ("d.csv", data)];
+    let here = folder(&borrowed(&files));
+    let solved = Solved::of(&here);
+    solved.is("a", 1000.0, 1e-6);
+    solved.says("`U_mV` is read in V; the name suggests mV: write `unit = \"mV\"`");
+    solved.says("is read in seconds; the name suggests min: write `x = ");
+    let files = in_units("V", ("mV", 1000.0), "");
+    Solved::of(&folder(&borrowed(&files))).does_not_say("suggests");
+    _ = gapi(here.path(), &["new", "d.csv", "--model", "level.mo"]);
+    let draft = fs::read_to_string(here.path().join("d.toml")).unwrap();
+    assert!(draft.contains("s assumed; the name suggests min: write `unit = \"min\"`"), "{draft}");
+}
+

@@ -3,7 +3,7 @@
 use crate::units;
 
 /// What stands for a unit and is none that converts.
-const OTHER: [&str; 9] = ["#", "-", "1", "bits", "a.u.", "arb.u.", "counts", "pH", "ppm"];
+const OTHER: [&str; 8] = ["#", "-", "1", "bits", "a.u.", "arb.u.", "counts", "pH"];
 
 /// The name and the unit of a column's head. The unit is one that is known; any other text in
 /// brackets belongs to the header, but the name alone denotes the column, too.

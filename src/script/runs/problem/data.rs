@@ -7,11 +7,11 @@ use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::problem::{Finding, FindingKind, Severity};
 use crate::mat::errors::DATA_NOTE;
-use crate::mat::{About, Column, MatFile};
+use crate::mat::{About, Column, MatFile, Version};
 use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
-use crate::units::{Conversion, Unit, in_words};
+use crate::units::{Conversion, Unit, in_words, suggested, written};
 
 /// A column in the unit of its variable.
 pub(super) struct Measured {
@@ -148,22 +148,15 @@ fn converted(
     let explicit = entry.unit.as_deref();
     let own = entry.column.as_deref().unwrap_or(name);
     let Some(given) = explicit.or_else(|| unit_of(&column.about, variable)) else {
-        let unknown = column.about.unknown_unit.iter();
-        notes.warn_about(table, unknown.map(|given| unknown_unit([own, given, name, unit])));
+        note_no_unit(column, [own, name, unit], (table, notes));
         return Ok(unchanged());
     };
     if given == unit {
         return Ok(unchanged());
     }
     if unit.is_empty() && explicit.is_none() {
-        let is_coherent = |unit: Unit| unit.factor == 1.0 && unit.offset == 0.0;
-        let scaled = variable.definitions.find(given).filter(|unit| !is_coherent(*unit));
-        notes.about(table, scaled.map(|_| {
-            format!(
-                "`{own}` is in {given}, but `{name}` has no unit: its values are used as they are; \
-                 give the variable a `unit`, or the column a `factor`"
-            )
-        }));
+        let found = variable.definitions.find(given);
+        notes.about(table, found.and_then(|found| unit_alone([own, given, name], found)));
         return Ok(unchanged());
     }
     let contradictions = variable.contradictions([given, unit]);
@@ -179,6 +172,9 @@ fn converted(
         )]);
         return Ok(unchanged());
     };
+    if let Some(factors) = from.angles_differ(to) {
+        return Err(unclear_angles([own, given, name, unit], factors));
+    }
     let Some(absolute) = from.to(to) else { return Err(refused()) };
     notes.warn_about(table, contradictions);
     let conversion = if variable.is_relative { absolute.of_differences() } else { absolute };
@@ -188,6 +184,38 @@ fn converted(
     let words = conversion.in_words() + zero_of_scale(conversion, absolute);
     notes.about(table, [format!("`{own}` is converted from {given} to {unit}{words}")]);
     Ok(scaled(conversion.factor, &|value| conversion.apply(value)))
+}
+
+/// Says what a column without a known unit is read in.
+fn note_no_unit(
+    column: &Column,
+    [own, name, unit]: [&str; 3],
+    (table, notes): (&MatFile, &mut Notes),
+) {
+    if let Some(given) = &column.about.unknown_unit {
+        notes.warn_about(table, [unknown_unit([own, given, name, unit])]);
+        return;
+    }
+    let is_measured = table.is_table() && table.version != Version::Results && name != "time";
+    let suggested = suggested_unit(own, unit).filter(|_| is_measured);
+    let sentence = |suggested| {
+        format!(
+            "`{own}` is read in {unit}; the name suggests {suggested}: write `unit = \"{suggested}\"` in \
+             its entry"
+        )
+    };
+    notes.about(table, suggested.map(sentence));
+}
+
+/// A sentence about a column whose variable has no unit, where its own is not a coherent one.
+fn unit_alone([own, given, name]: [&str; 3], unit: Unit) -> Option<String> {
+    let is_coherent = unit.factor == 1.0 && unit.offset == 0.0;
+    (!is_coherent).then(|| {
+        format!(
+            "`{own}` is in {given}, but `{name}` has no unit: its values are used as they are; give the \
+             variable a `unit`, or the column a `factor`"
+        )
+    })
 }
 
 /// The unit of a column as its file says, if it is known to us, to the model, or the same as that of the
@@ -205,6 +233,28 @@ fn unknown_unit([column, given, name, unit]: [&str; 4]) -> String {
          are, in {}; convert them, or give the column a `unit` or a `factor`",
         in_words(unit)
     )
+}
+
+/// The unit that a column without one has by its name, if its values would change in the unit of the variable.
+pub(super) fn suggested_unit<'n>(column: &'n str, unit: &str) -> Option<&'n str> {
+    let suggested = suggested(column)?;
+    let conversion = written(suggested)?.to(written(unit)?)?;
+    (!conversion.is_identity()).then_some(suggested)
+}
+
+/// Why values of which it is not clear whether they count revolutions or radians are not converted.
+fn unclear_angles(
+    [column, given, name, unit]: [&str; 4],
+    [radians, revolutions]: [f64; 2],
+) -> Fault {
+    crate::fault!(
+        BAD_OPTION,
+        "`{column}` is in {given} and `{name}` is in {unit}: one may count revolutions and the other \
+         radians, and a revolution is 2 pi rad"
+    )
+    .help(format!(
+        "write `factor = {revolutions}` for the column if so, or `factor = {radians}` if both count the same"
+    ))
 }
 
 /// What must be known of the zeros of scales that differ, as the end of a sentence; `absolute` is the

@@ -3,7 +3,7 @@
 
 use super::draft_subject::{DraftOptions, Estimable, Subject};
 use super::matching::{self, DataColumn, Meaning};
-use super::{build, fault_codes, file};
+use super::{build, data, fault_codes, file};
 use crate::Session;
 use crate::diag::suggest::listed;
 use crate::diag::{Diagnostic, Fault};
@@ -470,7 +470,10 @@ fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
             format!("; converted to {unit}")
         }
         (None, unit) if !unit.is_empty() => {
-            format!("; no unit in the file, {unit} assumed")
+            let suggested = data::suggested_unit(&column.name, unit).map(|suggested| {
+                format!("; the name suggests {suggested}: write `unit = \"{suggested}\"`")
+            });
+            format!("; no unit in the file, {unit} assumed{}", suggested.unwrap_or_default())
         }
         _ => String::new(),
     }

@@ -1,7 +1,7 @@
 //! The column of time of an experiment: numbers that count from a date, rows on either side of an
 //! event, and gaps.
 
-use super::data::{self, Notes};
+use super::data::{self, Notes, suggested_unit};
 use super::file::ColumnEntry;
 use crate::bail;
 use crate::diag::Fault;
@@ -92,7 +92,9 @@ pub(super) fn note_unit(
     entry: &ColumnEntry,
     (table, notes): (&MatFile, &mut Notes),
 ) {
-    let has_unit = entry.unit.is_some() || entry.factor.is_some() || column.about.unit.is_some();
+    // What is written and not known is said where the column is converted.
+    let is_written = column.about.unit.is_some() || column.about.unknown_unit.is_some();
+    let has_unit = entry.unit.is_some() || entry.factor.is_some() || is_written;
     /// Beginnings of names, and the units that they mean.
     const NAMES: [(&str, [&str; 2]); 5] = [
         ("hour", ["hours", "h"]),
@@ -102,6 +104,13 @@ pub(super) fn note_unit(
         ("ms", ["milliseconds", "ms"]),
     ];
     if !has_unit && table.is_table() && table.version != Version::Results {
+        if let Some(unit) = suggested_unit(name, "s") {
+            notes.about(table, [format!(
+                "`{name}` has no unit, and is read in seconds; the name suggests {unit}: write `x = {{ \
+                 variable = \"time\", column = \"{name}\", unit = \"{unit}\" }}`"
+            )]);
+            return;
+        }
         let lower = name.to_lowercase();
         let known = NAMES.iter().find(|(own, _)| lower.starts_with(own));
         let [words, unit] = known.map_or(["minutes", "min"], |(_, unit)| *unit);
@@ -278,6 +287,19 @@ mod tests {
         assert!(noted("time,V\n0,1\n1,2\n", "time").is_some());
         let hours = noted("Hour,V\n0,1\n1,2\n", "Hour").unwrap();
         assert!(hours.contains("for hours, write") && hours.contains("unit = \"h\""), "{hours}");
+        for (name, unit) in [("time_min", "min"), ("Elapsed minutes", "minutes"), ("t_ms", "ms")] {
+            let found = noted(&format!("{name},V\n0,1\n1,2\n"), name).unwrap();
+            let expected = format!(
+                "the name suggests {unit}: write `x = {{ variable = \"time\", column = \
+                                    \"{name}\", unit = \"{unit}\" }}`"
+            );
+            assert!(found.contains(&expected), "{found}");
+        }
+        assert_eq!(
+            noted("Time [jiffies],V\n0,1\n1,2\n", "Time"),
+            None,
+            "the unit is named elsewhere"
+        );
     }
 
     #[test]
