@@ -544,3 +544,39 @@ fn what_a_name_suggests_is_said_and_not_converted() {
     assert!(draft.contains("s assumed; the name suggests min: write `unit = \"min\"`"), "{draft}");
 }
 
+/// x = 20 + 5 (1 - exp(-0.01 t)) after `zero`, sampled every 10 s from `first` on.
+fn warming(zero: f64, first: f64, entry: &str) -> [(&'static str, String); 3] {
+    let model = "model Warming\n  parameter Real k = 0.1;\n  input Real u;\n  Real x(start = 20, fixed = true);\n\
+                 equation\n  der(x) = k*(20 + u - x);\nend Warming;\n";
+    let problem = format!(
+        "model = \"Warming\"\nfiles = [\"warming.mo\"]\n[parameters]\nk = {{ min = 1e-4, max = 1 }}\n\
+         [[experiment]]\ndata = \"d.csv\"\nx = {{ variable = \"time\", column = \"t\" }}\n\
+         outputs.x = {{ column = \"x\" }}\ninputs.u = {{ column = \"u\", interpolation = \"hold\" }}\n{entry}\n"
+    );
+    let rows = (0..60).map(|row| {
+        let t = first + 10.0 * f64::from(row);
+        format!("{t},{},5\n", 20.0 + 5.0 * (1.0 - (-0.01 * (t - zero)).exp()))
+    });
+    let data = format!("t [s],x,u\n{}", rows.collect::<String>());
+    [("warming.mo", model.to_owned()), ("p.toml", problem), ("d.csv", data)]
+}
+
+#[test]
+fn data_that_begin_well_after_the_simulation_are_named() {
+    let words = "the data begin at 300 s, but the simulation begins at 0 s";
+    let here = folder(&borrowed(&warming(300.0, 300.0, "")));
+    let solved = Solved::of(&here);
+    solved.says(words);
+    solved.says("inputs from columns are held at their first values until then");
+    solved.says("write `start_time = 300`");
+    let (_, output) = gapi(here.path(), &["new", "d.csv", "--model", "warming.mo"]);
+    assert!(output.contains(words), "{output}");
+    for (zero, first, entry) in
+        [(300.0, 300.0, "start_time = 300"), (0.0, 10.0, ""), (0.0, 0.0, "")]
+    {
+        let solved = Solved::of(&folder(&borrowed(&warming(zero, first, entry))));
+        solved.is("k", 0.01, 1e-4);
+        solved.does_not_say("the simulation begins");
+    }
+}
+

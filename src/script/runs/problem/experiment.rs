@@ -535,6 +535,11 @@ fn error_of(program: &Arc<Program>, settings: &Settings) -> f64 {
     if is_exact { settings.tolerance.min(EXACT) } else { settings.tolerance }
 }
 
+/// Data begin late where this many median steps pass before the first row, and this part of what they last:
+/// a first sample one step after 0 is usual, and 20 steps of an hour in milliseconds hardly count.
+const LATE_STEPS: f64 = 5.0;
+const LATE_PART: f64 = 0.05;
+
 /// Says where the simulation begins, if that is far from the data.
 pub(super) fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
     let finite = || comparison.x.iter().copied().filter(|x| x.is_finite());
@@ -542,15 +547,37 @@ pub(super) fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
     let last = finite().fold(f64::NEG_INFINITY, f64::max);
     let start = comparison.start;
     let is_given = comparison.entry.start_time.is_some();
-    let is_far = first - start > last - first && last > first;
-    if comparison.x_name == "time" && is_far && !is_given {
+    let (before, lasts) = (first - start, last - first);
+    if comparison.x_name != "time" || is_given || last <= first {
+        return;
+    }
+    if before > lasts {
         notes.warn(format!(
             "{}: the data begin at {first} s and last {} s, but the simulation begins at \
              {start} s; if the initial values are those of {first} s, write `start_time = \
              {first}` in the experiment",
             comparison.experiment,
-            significant(last - first, 6)
+            significant(lasts, 6)
         ));
+        return;
+    }
+    let is_late = time_axis::usual_step(finite()).is_some_and(|step| before > LATE_STEPS * step);
+    if is_late && before > LATE_PART * lasts {
+        let has_inputs = !comparison.entry.inputs.is_empty();
+        let inputs = match has_inputs {
+            true => " and inputs from columns are held at their first values until then",
+            false => "",
+        };
+        let sentence = format!(
+            "{}: the data begin at {first} s, but the simulation begins at {start} s: the initial values \
+             are those of {start} s{inputs}; if they are those of {first} s, write `start_time = {first}` \
+             in the experiment",
+            comparison.experiment
+        );
+        match has_inputs {
+            true => notes.warn(sentence),
+            false => notes.add(sentence),
+        }
     }
 }
 

@@ -234,6 +234,14 @@ pub(super) fn gaps(times: &[f64]) -> Vec<Gap> {
     (0..lengths.len()).filter(|at| is_gap(*at)).map(gap).collect()
 }
 
+/// The median of the steps between times that follow each other.
+pub(super) fn usual_step(times: impl Iterator<Item = f64>) -> Option<f64> {
+    let times: Vec<f64> = times.collect();
+    let steps = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
+    let steps: Vec<f64> = steps.collect();
+    (!steps.is_empty()).then(|| median(steps))
+}
+
 /// The middle of numbers, the larger one of two.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
