@@ -580,3 +580,24 @@ fn data_that_begin_well_after_the_simulation_are_named() {
     }
 }
 
+#[test]
+fn commas_that_may_separate_thousands_are_refused_or_named() {
+    let [model, (name, problem)] = level("V", "");
+    let problem = problem.replace("d.csv", "d.tsv");
+    let files = |rows: &str| {
+        let data = format!("t [s]\ty [mV]\n{rows}");
+        [model.clone(), (name, problem.clone()), ("d.tsv", data)]
+    };
+    let text = refused(&borrowed(&files("0\t800\n1\t999\n2\t1,200\n3\t1,400\n")));
+    assert!(
+        text.contains("line 4, column 2: `1,200` in `y [mV]` is ambiguous: 1.200 or 1200"),
+        "{text}"
+    );
+    assert!(text.contains("beside `800` in line 2"), "{text}");
+    let solved = Solved::of(&folder(&borrowed(&files("0\t1,200\n1\t1,500\n2\t1,800\n3\t2,100\n"))));
+    solved.is("a", 0.0012, 1e-6);
+    solved.says(
+        "`1,200` in `y [mV]`, line 2, column 2, is read with a decimal comma; if it means 1200",
+    );
+}
+

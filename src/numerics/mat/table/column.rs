@@ -147,7 +147,7 @@ impl<'r> Cells<'r, '_> {
         let decimal = self.decimal(usual)?;
         let mut values = Vec::with_capacity(self.rows.len());
         let (mut notes, mut words, mut grouped) = (Vec::new(), Vec::new(), None);
-        notes.extend(self.points_of_thousands(usual));
+        notes.extend(self.marks_of_thousands(usual));
         for (line, cell) in self.all() {
             match missing(cell) {
                 Some(_) if self.strict && cell.is_empty() => {
@@ -236,35 +236,57 @@ impl<'r> Cells<'r, '_> {
             Some(_) => doubtful[0],
             None => doubtful[1].or(doubtful[0]),
         };
+        if known.is_none()
+            && let [_, Some((line, cell))] = doubtful
+            && let Some((at, integer)) = self.hundreds()
+        {
+            return Err(self.ambiguous(line, cell, Some((at, integer))));
+        }
         match (decimal, doubt) {
             (Some(decimal), None) => Ok(decimal),
-            (_, Some((line, cell))) => Err(self.ambiguous(line, cell, certain)),
+            (_, Some((line, cell))) => {
+                let evidence = certain.map(|(_, at, evidence)| (at, evidence));
+                Err(self.ambiguous(line, cell, evidence))
+            }
             (None, None) => Ok('.'),
         }
     }
 
-    /// A sentence about numbers such as `1.000` where nothing in the file shows whether the point is a
-    /// decimal one: between semicolons or tabs it may as well separate thousands.
-    fn points_of_thousands(self, usual: Option<char>) -> Option<String> {
+    /// A whole number of three digits: beside it `1,101` comes after 999 as likely as it is a decimal.
+    fn hundreds(self) -> Option<(usize, &'r str)> {
+        let is_one = |cell: &str| {
+            let digits = cell.strip_prefix(['+', '-', '−']).unwrap_or(cell);
+            form(cell) == Some(Form::Integer) && digits.len() == 3 && !digits.starts_with('0')
+        };
+        self.all().find(|(_, cell)| is_one(cell))
+    }
+
+    /// A sentence about numbers such as `1.000` or `1,000` where nothing in the file shows whether the
+    /// mark is the decimal one: between semicolons or tabs it may as well separate thousands.
+    fn marks_of_thousands(self, usual: Option<char>) -> Option<String> {
         if usual.is_some() || self.places != (Places::Lines { commas: false }) {
             return None;
         }
-        let is_doubtful = |cell: &str| matches!(form(cell), Some(Form::Ambiguous('.')));
-        let (line, cell) = self.all().find(|(_, cell)| is_doubtful(cell))?;
-        let joined: String = cell.chars().filter(|c| *c != '.').collect();
+        let doubtful = |(line, cell)| match form(cell) {
+            Some(Form::Ambiguous(mark)) => Some((line, cell, mark)),
+            _ => None,
+        };
+        let (line, cell, mark): (usize, &str, char) = self.all().find_map(doubtful)?;
+        let name = if mark == ',' { "comma" } else { "point" };
+        let joined: String = cell.chars().filter(|c| *c != mark).collect();
         Some(format!(
-            "`{cell}` in `{}`, {}, is read with a decimal point; if it means {joined}, remove the \
-             points that separate thousands from the file",
+            "`{cell}` in `{}`, {}, is read with a decimal {name}; if it means {joined}, remove the \
+             {name}s that separate thousands from the file",
             self.name,
             self.place(line)
         ))
     }
 
-    fn ambiguous(self, line: usize, cell: &str, certain: Option<(char, usize, &str)>) -> Fault {
+    fn ambiguous(self, line: usize, cell: &str, evidence: Option<(usize, &str)>) -> Fault {
         let joined: String = cell.chars().filter(|c| !matches!(c, '.' | ',')).collect();
         let point = cell.replace(',', ".");
-        let why = match certain {
-            Some((_, at, evidence)) => format!(", beside `{evidence}` in {}", self.places.row(at)),
+        let why = match evidence {
+            Some((at, evidence)) => format!(", beside `{evidence}` in {}", self.places.row(at)),
             None => String::new(),
         };
         fault!(
@@ -337,5 +359,23 @@ mod tests {
         {
             assert_eq!(notes(clear), [""; 0], "{clear}");
         }
+        let found = notes("t\tP\n0\t1,501\n1\t1,599\n");
+        let expected = "`1,501` in `P`, line 2, column 2, is read with a decimal comma; if it means 1501, \
+                        remove the commas that separate thousands from the file";
+        assert_eq!(found, [expected]);
+        for clear in ["t;P\n0;1,501\n1;1,5\n", "t;P\n0,5;1,501\n1;999\n", "t;P\n0;0,501\n1;999\n"] {
+            assert_eq!(notes(clear), [""; 0], "{clear}");
+        }
+    }
+
+    #[test]
+    fn commas_beside_whole_numbers_of_three_digits_are_ambiguous() {
+        for text in ["t\tP\n0\t899\n1\t999\n2\t1,101\n", "t;P\n0;-999\n1;-1,101\n"] {
+            let fault = read_csv(text.as_bytes()).map(|_| ()).unwrap_err();
+            assert!(fault.message.contains("1,101` in `P` is ambiguous: "), "{}", fault.message);
+            assert!(fault.message.contains(", beside `"), "{}", fault.message);
+        }
+        let small = read_csv(b"t;P\n0;0\n1;1,101\n").unwrap();
+        assert_eq!(small.column("P").unwrap().values, [0.0, 1.101]);
     }
 }
