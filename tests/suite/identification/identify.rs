@@ -453,6 +453,16 @@ fn a_full_disk_ends_no_run_and_is_told() {
 }
 
 #[test]
+fn results_are_shown_although_what_they_depend_on_cannot_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    cooling(folder.path());
+    fs::create_dir_all(folder.path().join("o/inputs.json")).unwrap();
+    let (code, text) = run(folder.path(), &["cooling.toml", "--out", "o"]);
+    assert!(code == 1 && text.contains("inputs.json"), "{code} {text}");
+    assert!(text.contains("low") && text.contains("95 % interval"), "{text}");
+}
+
+#[test]
 fn a_folder_that_cannot_be_written_is_told_before_the_run() {
     let folder = tempfile::tempdir().unwrap();
     filled_tank(folder.path());

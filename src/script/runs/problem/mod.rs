@@ -322,7 +322,8 @@ fn solve_built(
         }
         solution => solution?,
     };
-    former::keep(session, &folder, &origins)?;
+    // The results are shown before what cannot be written is reported.
+    let kept = former::keep(session, &folder, &origins);
     write_quietly(session, &folder, &solution, seconds);
     solving::draw_curves(&experiments, &mut solution, &validation, hurry(session));
     if ending.is_interrupted {
@@ -339,7 +340,7 @@ fn solve_built(
     let is_interrupted = ending.is_interrupted || session.world.is_interrupted();
     solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
     print(session, &mut solution, notes);
-    write(session, &folder, &solution, seconds)?;
+    write(session, &folder, &solution, seconds).and(kept)?;
     if !is_interrupted {
         keep(session, &run)?;
         keep_finished(session, (&checkpoint, &folder), options, &solution);
