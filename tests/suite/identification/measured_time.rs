@@ -601,3 +601,14 @@ fn commas_that_may_separate_thousands_are_refused_or_named() {
     );
 }
 
+#[test]
+fn durations_of_more_than_a_day_are_no_times_of_day() {
+    let [model, problem] = level("V", "");
+    let data = "t,y [V]\n25:00:00,2\n25:00:01,2.5\n25:00:02,3\n25:00:03,3.5\n".to_owned();
+    let solved = Solved::of(&folder(&borrowed(&[model, problem, ("d.csv", data)])));
+    solved.is("a", 2.0, 1e-6);
+    solved.says(
+        "durations, read as seconds since the first point, which is 90000 s after their zero",
+    );
+    solved.does_not_say("times of day");
+}

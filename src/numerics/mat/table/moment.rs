@@ -42,6 +42,11 @@ impl Moment {
             _ => MomentKind::Clock,
         }
     }
+
+    /// Whether it is a duration of more than a day. `24:00:00` is also the end of a day.
+    fn is_elapsed(self) -> bool {
+        self.date.is_none() && self.clock.is_some_and(|(nanoseconds, _)| nanoseconds > DAY)
+    }
 }
 
 /// The moment that a cell holds.
@@ -237,6 +242,7 @@ pub(crate) fn seconds(
     let mut found: Vec<Option<i128>> = Vec::with_capacity(moments.len());
     let mut passes_midnight = false;
     let mut is_dated = false;
+    let is_elapsed = dates.is_none() && moments.iter().flatten().any(|own| own.is_elapsed());
     let (mut added, mut before) = (0_i128, None);
     for (row, moment) in moments.iter().enumerate() {
         let Some(moment) = moment else {
@@ -261,7 +267,8 @@ pub(crate) fn seconds(
             continue;
         }
         // From late in the evening to early in the morning: the next day.
-        if before.is_some_and(|before: i64| before - clock > DAY / 2) && clock < DAY {
+        let is_back = before.is_some_and(|before: i64| before - clock > DAY / 2);
+        if is_back && clock < DAY && !is_elapsed {
             added += i128::from(DAY);
             passes_midnight = true;
         }
@@ -276,13 +283,26 @@ pub(crate) fn seconds(
         is_dated || passes_midnight || (first >= i128::from(3600 * SECOND) && last - first < first);
     let origin = if since_first { first } else { 0 };
     let values = found.iter().map(|n| n.map_or(f64::NAN, |n| (n - origin) as f64 / 1e9)).collect();
-    let what = match (is_dated, since_first) {
-        (true, _) => "dates and times, read as seconds since the first point",
-        (false, true) => "times of day, read as seconds since the first point",
-        (false, false) => "hours, minutes and seconds, read as seconds",
-    };
+    let origin = is_elapsed.then_some(origin);
     let midnight = if passes_midnight { ", across midnight" } else { "" };
+    let what = meaning(is_dated, since_first, origin);
     Ok(Seconds { values, meaning: format!("{what}{midnight}{changes}") })
+}
+
+/// What moments are read as; `elapsed`, in nanoseconds, is where durations of more than a day begin.
+fn meaning(is_dated: bool, since_first: bool, elapsed: Option<i128>) -> String {
+    let what = match (is_dated, since_first, elapsed) {
+        (true, ..) => "dates and times, read as seconds since the first point",
+        (false, true, Some(first)) => {
+            let first = first as f64 / 1e9;
+            return format!(
+                "durations, read as seconds since the first point, which is {first} s after their zero"
+            );
+        }
+        (false, true, None) => "times of day, read as seconds since the first point",
+        (false, false, _) => "hours, minutes and seconds, read as seconds",
+    };
+    what.to_owned()
 }
 
 /// Counts on where a local clock is set forward or back by an hour: at night on a Sunday, where the
@@ -406,6 +426,12 @@ mod tests {
     fn clocks() {
         assert_eq!(of(&["0:00:00", "0:30:00", "25:00:00"]).unwrap().0, [0.0, 1800.0, 90_000.0]);
         assert_eq!(of(&["0:00:10", "0:00:20"]).unwrap().0, [10.0, 20.0]);
+        let (values, meaning) = of(&["25:00:00", "25:00:05", "25:00:10.5"]).unwrap();
+        assert_eq!(values, [0.0, 5.0, 10.5]);
+        let durations =
+            "durations, read as seconds since the first point, which is 90000 s after their zero";
+        assert_eq!(meaning, durations);
+        assert!(of(&["23:00:00", "24:00:00"]).unwrap().1.starts_with("times of day"));
         assert_eq!(of(&["23:59:59.5", "00:00:00.25"]).unwrap().0, [0.0, 0.75]);
         assert_eq!(of(&["10:12:01", "10:12:02.1"]).unwrap().0, [0.0, 1.1]);
         assert!(of(&["10:05", "10:06"]).unwrap_err().contains("hours and minutes"));
