@@ -87,7 +87,7 @@ impl System {
         &self.program
     }
 
-    /// Restricts [`Residual::observe`] to these variables (positions in [`Program::variables`]),
+    /// Restricts [`Residual::observe`](crate::sim::Residual::observe) to these variables (positions in [`Program::variables`]),
     /// one column each in this order, and computes nothing that they do not need.
     pub fn observe_only(&mut self, variables: &[usize]) {
         self.restore_program();

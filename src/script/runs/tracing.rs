@@ -18,7 +18,7 @@ pub(super) struct Tracing {
 
 impl Session {
     /// Records the calls of the paper's functions from here on in a file, which is rewritten. The
-    /// host that requests the trace has permitted the file ([`Session::permit_file`]): scripts do
+    /// host that requests the trace has permitted the file (`permit_file` of the world of the session): scripts do
     /// not.
     ///
     /// # Errors
