@@ -79,6 +79,15 @@ package ExactIntegers
     end when;
   end Sum;
 
+  model Matrix
+    Integer step(start = 2147483648, fixed = true);
+    Integer number[2, 2] = {{step, 1}, {1, step}}^2;
+  equation
+    when sample(0.1, 0.1) then
+      step = pre(step) + 1;
+    end when;
+  end Matrix;
+
   model Equation
     Integer step(start = 2147483648, fixed = true);
     Integer number = step*(step + 1);

@@ -77,6 +77,8 @@ impl<T: Target> Lowering<'_, T> {
             | BinaryOperator::Subtract
             | BinaryOperator::ElementwiseAdd
             | BinaryOperator::ElementwiseSubtract => sides.into_iter().all(varies),
+            // That of a scalar is a Real.
+            BinaryOperator::Power => !sides[0].dims.is_empty(),
             _ => false,
         }
     }
