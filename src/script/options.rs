@@ -87,7 +87,8 @@ pub struct Options {
     pub strictness: Strictness,
     /// Whether only errors are written to standard error, no warnings and notes.
     pub quiet: bool,
-    /// What scripts may do outside.
+    /// What scripts may do outside, from [`Session::with_options`](crate::Session::with_options) on: later
+    /// changes have no effect.
     pub permissions: Permissions,
     /// Whether what the simulations answer is kept on the way.
     pub journaling: Journaling,

@@ -7,10 +7,11 @@ mod parse;
 mod written;
 
 use crate::elementary;
+use std::f64::consts::PI;
+
 pub use definitions::Definitions;
 pub use dimension::Dimension;
 pub use parse::{dimension, unit};
-use std::f64::consts::PI;
 pub use written::{in_words, normalized, suggested, written};
 
 /// A unit: `value * factor + offset` is the value in coherent SI units.
@@ -255,6 +256,7 @@ mod tests {
         assert_eq!(convert(1.0, "bits", "1"), None);
         assert_eq!(convert(0.1 + 0.2, "V", "V"), Some(0.1 + 0.2));
     }
+
     #[test]
     fn where_revolutions_or_radians_may_be_counted_both_factors_are_known() {
         let factors = |from: &str, to: &str| written(from)?.angles_differ(written(to)?);

@@ -11,7 +11,7 @@ use crate::sim::Failure;
 use crate::symbolic::VarId;
 
 impl System {
-    /// Sets a parameter by its position in [`Program::parameters`](crate::codegen::program::Program::parameters); it takes effect at the next
+    /// Sets a parameter by its position among those of the program; it takes effect at the next
     /// initialization. Bounds are the caller's to check.
     pub fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), Fault> {
         let name = &self.program.parameters().get(index).map(|p| p.name.clone());
@@ -47,7 +47,7 @@ impl System {
         self.set.fill(None);
     }
 
-    /// The value of a parameter or constant (position in [`Program::variables`](crate::codegen::program::Program::variables)) after
+    /// The value of a parameter or constant (position among the variables of the program) after
     /// initialization; `None` for other variables.
     pub fn value(&self, variable: usize) -> Option<f64> {
         let info = self.program.variables().get(variable)?;

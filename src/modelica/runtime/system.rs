@@ -87,8 +87,8 @@ impl System {
         &self.program
     }
 
-    /// Restricts [`Residual::observe`](crate::sim::Residual::observe) to these variables (positions in [`Program::variables`]),
-    /// one column each in this order, and computes nothing that they do not need.
+    /// Restricts what is observed to these variables (positions in [`Program::variables`]), one column
+    /// each in this order, and computes nothing that they do not need.
     pub fn observe_only(&mut self, variables: &[usize]) {
         self.restore_program();
         self.outputs.observed_variables = Some(variables.to_vec());

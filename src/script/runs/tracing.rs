@@ -18,8 +18,8 @@ pub(super) struct Tracing {
 
 impl Session {
     /// Records the calls of the paper's functions from here on in a file, which is rewritten. The
-    /// host that requests the trace has permitted the file (`permit_file` of the world of the session): scripts do
-    /// not.
+    /// host that requests the trace has permitted the file (`permit_file` of the session's world): scripts
+    /// do not.
     ///
     /// # Errors
     ///
