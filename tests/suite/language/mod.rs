@@ -1,6 +1,7 @@
 //! What texts mean: grammar, classes, flattening, equations and functions, before anything is simulated.
 
 mod algorithms;
+mod argument_sizes;
 mod assertions;
 mod c_functions;
 mod checking;

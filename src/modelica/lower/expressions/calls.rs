@@ -97,6 +97,7 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
         let values = self.inputs(user, arguments, span)?;
+        self.check_sizes(user, &values, arguments, span)?;
         if matches!(user.body, FunctionBody::RecordConstructor) {
             let fields = user.inputs.iter().map(|i| i.name).zip(values).collect();
             return Ok(vec![Lowered::Record(fields)]);

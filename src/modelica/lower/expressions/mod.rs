@@ -3,6 +3,7 @@
 //! The rules of arrays are written once, here, for two targets: the equations of a model, and the
 //! statements of user functions. What differs is a [`Target`].
 
+mod argument_sizes;
 mod arrays;
 mod builtins;
 mod calls;

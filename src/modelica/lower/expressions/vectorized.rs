@@ -70,26 +70,30 @@ fn gathered<S: Copy>(
     }))
 }
 
-/// The sizes of the first dimensions, which the input does not have.
-fn surplus<'a, S>(input: &FunctionComponent, argument: &'a Lowered<S>) -> Option<&'a [usize]> {
-    match (argument, &input.value_type) {
-        (Lowered::Array(array), _) => {
-            let n = array.dims.len().checked_sub(input.dims.len())?;
-            (n > 0).then(|| &array.dims[..n])
-        }
-        (Lowered::Strings(strings), _) => {
-            let n = strings.dims.len().checked_sub(input.dims.len())?;
-            (n > 0).then(|| &strings.dims[..n])
-        }
+/// All sizes of a value for an input: those of the input's own dimensions are the last.
+pub(super) fn sizes_for<'a, S>(
+    input: &FunctionComponent,
+    value: &'a Lowered<S>,
+) -> Option<&'a [usize]> {
+    match (value, &input.value_type) {
+        (Lowered::Array(array), _) => Some(&array.dims),
+        (Lowered::Strings(strings), _) => Some(&strings.dims),
         // Arrays of records are records of arrays.
         (Lowered::Record(values), ValueType::Record(_, fields)) => {
             let (name, value) = values.first()?;
-            let outer = surplus(fields.get(name)?, value)?;
-            let n = outer.len().checked_sub(input.dims.len())?;
-            (n > 0).then(|| &outer[..n])
+            let field = fields.get(name)?;
+            let dims = sizes_for(field, value)?;
+            Some(&dims[..dims.len().checked_sub(field.dims.len())?])
         }
         _ => None,
     }
+}
+
+/// The sizes of the first dimensions, which the input does not have.
+fn surplus<'a, S>(input: &FunctionComponent, argument: &'a Lowered<S>) -> Option<&'a [usize]> {
+    let dims = sizes_for(input, argument)?;
+    let n = dims.len().checked_sub(input.dims.len())?;
+    (n > 0).then(|| &dims[..n])
 }
 
 /// The argument of the call of this number.
