@@ -104,6 +104,7 @@ impl Builder<'_> {
         self.execution.raw -= 1;
         match own? {
             Lowered::Array(Array { dims, elements }) => {
+                self.check_discrete("pre", &elements, reference.span)?;
                 let before = elements.into_iter().map(|e| self.previous(e, reference.span));
                 Ok(Lowered::Array(Array { dims, elements: before.collect::<Result<_, _>>()? }))
             }

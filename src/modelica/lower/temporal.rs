@@ -2,7 +2,7 @@
 
 use super::build::scalar_of_nothing;
 use super::builder::Builder;
-use super::dae::VariableKind;
+use super::dae::{Variable, VariableKind};
 use super::equation::{Assertion, Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_DISCRETE, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
@@ -41,6 +41,9 @@ impl Builder<'_> {
             _ => {}
         }
         let mut array = arguments.remove(0);
+        if let Temporal::Pre | Temporal::Edge | Temporal::Change = operator {
+            self.check_discrete(entry.name, &array.elements, span)?;
+        }
         for at in 0..array.elements.len() {
             let element = array.elements[at];
             array.elements[at] = match operator {
@@ -58,6 +61,33 @@ impl Builder<'_> {
             };
         }
         Ok(array)
+    }
+
+    /// Refuses continuous-time variables as arguments of `pre`, `edge` and `change` where no
+    /// when-clause acts (MLS §3.7.5.1): between events they have no value before.
+    pub(super) fn check_discrete(
+        &self,
+        operator: &str,
+        arguments: &[Expr],
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        if self.place.in_when || self.place.initial {
+            return Ok(());
+        }
+        let variables = arguments.iter().filter_map(|a| self.dae.pool.as_variable(*a));
+        let mut variables = variables.map(|variable| self.dae.variable(variable));
+        let is_continuous = |variable: &&Variable| {
+            matches!(variable.kind, VariableKind::Unknown | VariableKind::Derivative(_))
+        };
+        match variables.find(is_continuous) {
+            None => Ok(()),
+            Some(variable) => Err(fault!(
+                NOT_DISCRETE,
+                "`{}` changes between events, so `{operator}` of it has a value in when-clauses only",
+                variable.name;
+                help: "write the equation in a when-clause")
+            .at(span)),
+        }
     }
 
     /// `pre(a)`: the value of a variable before the event iteration in progress.

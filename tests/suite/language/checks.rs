@@ -621,3 +621,30 @@ fn integers_hold_no_reals() {
         code,
     );
 }
+
+/// Outside of when-clauses, only what is discrete has a value before (MLS §3.7.5.1).
+#[test]
+fn continuous_variables_have_no_value_before_outside_of_when_clauses() {
+    use crate::support::simulated::refused as said;
+    let model = |body: &str| {
+        format!("model M Real x(start = 2, fixed = true); {body} equation der(x) = 1; end M;")
+    };
+    for wrong in [
+        "Real y = pre(x);",
+        "Boolean b = change(x);",
+        "Real y; algorithm y := pre(x) + 1;",
+        "Real y; algorithm y := 0; for i in 1:integer(time) loop y := y + pre(x); end for;",
+        "discrete Real d(start = 0, fixed = true); equation when pre(x) > 3 then d = x; end when;",
+    ] {
+        let found = said(&model(wrong));
+        assert!(found.starts_with("not-discrete"), "{wrong}: {found}");
+    }
+    let right =
+        "discrete Real d(start = 0, fixed = true); Boolean b = time > 0.5; Boolean e = edge(b);
+        Integer n(start = 0, fixed = true); Real z = pre(d) + (if change(n) then 1 else 0);
+        Real w(start = 0, fixed = true); algorithm when edge(b) then w := pre(x); end when;
+        equation when b then d = pre(x) + 1; n = pre(n) + 1; end when;";
+    let run = simulated(&model(right), 1.0);
+    let values = [run.last("d"), run.last("z"), run.last("w"), run.last("n")];
+    crate::support::simulated::all_near(&values, &[3.5, 3.5, 2.5, 1.0], 1e-6);
+}
