@@ -6,7 +6,7 @@ use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::execution::Loops;
 use super::expressions::{Array, Lowered, Lowering, VariableReferences};
-use super::function::call_of_any_size;
+use super::function::{call_of_any_size, interpreted_call};
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
@@ -85,12 +85,27 @@ impl Builder<'_> {
             arguments.push(value);
         }
         let function = self.function_of(statement, inputs, outputs);
-        let results = call_of_any_size(self, &function, arguments, s.span)?;
+        let results = self.called_in_any_way(&function, arguments, s.span)?;
         let paths = known.iter().filter(|(_, name)| assigned.contains(*name));
         for ((read, _), result) in paths.zip(results) {
             self.assign_results(&read.path, &result);
         }
         Ok(())
+    }
+
+    /// The results of a call of such a function, by the interpreter where it cannot be compiled.
+    fn called_in_any_way(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        match call_of_any_size(self, function, arguments.clone(), span) {
+            Err(error) if error.code == NO_CONSTANT_VALUE => {
+                interpreted_call(self, function, &arguments, span).ok_or(error)
+            }
+            results => results,
+        }
     }
 
     /// `pre(v)`, element by element.

@@ -96,4 +96,40 @@ package ExactIntegers
       step = pre(step) + 1;
     end when;
   end Equation;
+
+  model OuterProduct
+    Integer step(start = 1, fixed = true);
+    Integer number[2, 2] = outerProduct({100000000, 3}, {step, 1});
+  equation
+    when sample(0.1, 0.1) then
+      step = 100000000;
+    end when;
+  end OuterProduct;
+
+  model Cross
+    Integer step(start = 1, fixed = true);
+    Integer number[3] = cross({1, 100000000, 200000000}, {1, step, step});
+  equation
+    when sample(0.1, 0.1) then
+      step = 100000000;
+    end when;
+  end Cross;
+
+  model PartialSum "The product is 9007199254740991, of which a part is 9007199254740992"
+    Integer step(start = 1, fixed = true);
+    Integer number = {1, 1, -1}*{step, 1, 1};
+  equation
+    when sample(0.1, 0.1) then
+      step = 9007199254740991;
+    end when;
+  end PartialSum;
+
+  model SumOfArrays
+    Integer step(start = 1, fixed = true);
+    Integer number[2] = sum({step, i} for i in 1:2);
+  equation
+    when sample(0.1, 0.1) then
+      step = 9007199254740991;
+    end when;
+  end SumOfArrays;
 end ExactIntegers;

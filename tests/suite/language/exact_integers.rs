@@ -36,7 +36,17 @@ fn said(model: &str) -> String {
 #[test]
 fn integers_that_models_cannot_hold_are_refused() {
     // Without the check `mod` takes products that are rounded, and gives other numbers than in a script.
-    for model in ["Inlined", "Compiled", "Sum", "Matrix", "Equation"] {
+    for model in [
+        "Inlined",
+        "Compiled",
+        "Sum",
+        "Matrix",
+        "Equation",
+        "OuterProduct",
+        "Cross",
+        "PartialSum",
+        "SumOfArrays",
+    ] {
         let said = said(model);
         assert!(said.contains("beyond 9007199254740991"), "{model}: {said}");
     }

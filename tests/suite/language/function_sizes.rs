@@ -69,3 +69,23 @@ fn sizes_of_results_must_not_vary_at_run_time() {
         error.message
     );
 }
+
+/// Values at 1 s, computed by hand.
+#[test]
+fn sizes_that_a_function_computes_are_not_bounded_by_its_arrays() {
+    let models = include_str!("../../data/models/function_sizes_computed.mo");
+    for (model, variable, expected) in [
+        ("Early", "y", 3.0),
+        ("InLoop", "y", 7.0),
+        ("Made", "y", 4.0 + 10.0 + 4.0),
+        ("OfArray", "y", 6.0 + 6.0 + 25.0),
+        ("Beyond", "y", 20.0 + 2.0),
+        ("Statement", "y", 56.0),
+        ("Statement", "z", 7.0),
+        ("Dependent", "y", 25.0),
+    ] {
+        let text = format!("{models}\nmodel Own = Computed.{model};");
+        let value = simulated(&text, 1.0).last(variable);
+        assert!((value - expected).abs() < 1e-9, "{model}: {value}");
+    }
+}

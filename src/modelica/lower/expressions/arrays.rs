@@ -219,7 +219,7 @@ impl<T: Target> Lowering<'_, T> {
         let dims: Vec<&[usize]> = parts.iter().map(|part| part.dims.as_slice()).collect();
         let plan = functions::concatenation(axis, &dims).map_err(|fault| mismatch(fault, span))?;
         let values: Vec<Option<&Array<T::Scalar>>> = parts.iter().map(Some).collect();
-        self.elements_of_plan(plan, &values, span)
+        self.elements_of_plan(plan, &values, false, span)
     }
 }
 

@@ -94,7 +94,10 @@ impl<T: Target> Lowering<'_, T> {
         entry.check_count(arguments.len()).map_err(|fault| mismatch(fault, span))?;
         match entry.meaning {
             Meaning::Mathematical(id) => self.of_scalars(id, arguments, span),
-            Meaning::Plan(plan, known) => self.planned(plan, known, arguments, span),
+            Meaning::Plan(plan, known) => {
+                let exact = known == Known::Nothing && self.are_integers(arguments);
+                self.planned(plan, known, arguments, exact, span)
+            }
             Meaning::Reduction(reduction) => match function::find(reduction.name()) {
                 Some(id) => self.of_scalars(id, arguments, span),
                 None => Err(fault!(ARRAY_MISMATCH, "`{}` takes one array", entry.name).at(span)),
@@ -172,6 +175,7 @@ impl<T: Target> Lowering<'_, T> {
         plan: PlanOf,
         known: Known,
         arguments: &[Expression],
+        exact: bool,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let mut numbers = Vec::with_capacity(arguments.len());
@@ -186,10 +190,10 @@ impl<T: Target> Lowering<'_, T> {
             });
         }
         if values.is_empty() {
-            return self.made(plan, &numbers, &[], span).map(Lowered::Array);
+            return self.made(plan, &numbers, &[], false, span).map(Lowered::Array);
         }
         self.by_fields(&values, span, &mut |lowering, arrays| {
-            lowering.made(plan, &numbers, &arrays, span)
+            lowering.made(plan, &numbers, &arrays, exact, span)
         })
     }
 
@@ -243,6 +247,7 @@ impl<T: Target> Lowering<'_, T> {
         plan: PlanOf,
         numbers: &[Option<i64>],
         arrays: &[Array<T::Scalar>],
+        exact: bool,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         let mut rest = arrays.iter();
@@ -253,23 +258,47 @@ impl<T: Target> Lowering<'_, T> {
             number: number.unwrap_or(0),
         });
         let plan = plan(&described.collect::<Vec<_>>()).map_err(|fault| mismatch(fault, span))?;
-        self.elements_of_plan(plan, &values, span)
+        self.elements_of_plan(plan, &values, exact, span)
     }
 
-    /// The array of a plan of these arguments.
+    /// The array of a plan of these arguments; `exact` if these are Integers.
     pub(super) fn elements_of_plan(
         &mut self,
         plan: Plan,
         values: &[Option<&Array<T::Scalar>>],
+        exact: bool,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         let count = match plan.count() {
             Some(count) if count <= super::MAX_SCALARS => count,
             _ => return Err(fault!(ARRAY_MISMATCH, "an array of too many elements").at(span)),
         };
-        let elements = (0..count).map(|at| self.element_of_plan(plan.element(at), values));
-        let elements = elements.collect();
+        let mut elements = Vec::with_capacity(count);
+        for at in 0..count {
+            elements.push(match plan.element(at) {
+                Element::Product(a, b) if exact => self.exact_product(a, b, values, span)?,
+                Element::Determinant([a, b], [c, d]) if exact => {
+                    let plus = self.exact_product(a, b, values, span)?;
+                    let minus = self.exact_product(c, d, values, span)?;
+                    let difference = self.target.binary(Binary::Sub, plus, minus);
+                    self.exact(Array::scalar(difference), span)?.elements[0]
+                }
+                element => self.element_of_plan(element, values),
+            });
+        }
         Ok(Array { dims: plan.dims, elements })
+    }
+
+    /// A product of Integers.
+    fn exact_product(
+        &mut self,
+        a: functions::Pick,
+        b: functions::Pick,
+        values: &[Option<&Array<T::Scalar>>],
+        span: Span,
+    ) -> Result<T::Scalar, Diagnostic> {
+        let product = self.element_of_plan(Element::Product(a, b), values);
+        Ok(self.exact(Array::scalar(product), span)?.elements[0])
     }
 
     fn element_of_plan(
@@ -314,51 +343,87 @@ impl<T: Target> Lowering<'_, T> {
         let [element] = arguments.positional.as_slice() else {
             return Err(fault!(ARRAY_MISMATCH, "`{name}` takes one array").at(span));
         };
-        let elements = match arguments.iterators.as_slice() {
-            [] => self.array(element)?.elements,
-            iterators => {
-                let all = self.reduction_elements(element, iterators)?;
-                let dims = all.dims.get(iterators.len()..).unwrap_or_default().to_vec();
-                match (dims.is_empty(), reduction) {
-                    (true, _) => all.elements,
-                    (false, Reduction::Sum) => return Ok(self.sum_of_arrays(dims, &all.elements)),
-                    (false, _) => {
-                        return Err(fault!(
-                            ARRAY_MISMATCH,
-                            "`{name}` of arrays, one for each \
-                            iteration, is not defined"
-                        )
-                        .at(span));
-                    }
-                }
+        let iterators = arguments.iterators.as_slice();
+        if iterators.is_empty() {
+            let elements = self.array(element)?.elements;
+            let is_integer = elements.len() != 1 && self.is_integer(name, arguments, span);
+            return self.reduced(reduction, element, &elements, is_integer, span);
+        }
+        let is_integer = self.is_integer(name, arguments, span);
+        let counted = self.counted_reduction(reduction, element, iterators, is_integer, span)?;
+        if let Some(value) = counted {
+            return Ok(Array::scalar(value));
+        }
+        let all = self.reduction_elements(element, iterators)?;
+        let dims = all.first().map_or_else(|| element.written_sizes(), |one| one.dims.clone());
+        if let Some(other) = all.iter().find(|one| one.dims != dims) {
+            return Err(size_fault(&dims, &other.dims).at(span));
+        }
+        let elements: Vec<T::Scalar> = all.into_iter().flat_map(|one| one.elements).collect();
+        match (dims.is_empty(), reduction) {
+            (true, _) => self.reduced(reduction, element, &elements, is_integer, span),
+            (false, Reduction::Sum) => self.sum_of_arrays(dims, &elements, is_integer, span),
+            (false, _) => {
+                let fault = fault!(
+                    ARRAY_MISMATCH,
+                    "`{name}` of arrays, one for each iteration, is not defined"
+                );
+                Err(fault.at(span))
             }
-        };
-        let scalar = |element| Ok(Array { dims: Vec::new(), elements: vec![element] });
-        let folded = match reduction {
-            Reduction::Sum => Some(self.fold(Binary::Add, 0.0, &elements)),
-            Reduction::Product => Some(self.fold(Binary::Mul, 1.0, &elements)),
+        }
+    }
+
+    /// The reduction of these scalars.
+    fn reduced(
+        &mut self,
+        reduction: Reduction,
+        element: &Expression,
+        elements: &[T::Scalar],
+        is_integer: bool,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let operation = match reduction {
+            Reduction::Sum => Some((Binary::Add, 0.0)),
+            Reduction::Product => Some((Binary::Mul, 1.0)),
             Reduction::Min | Reduction::Max => None,
         };
-        if let Some(folded) = folded {
-            let folded = Array::scalar(folded);
-            let is_integer = elements.len() > 1 && self.is_integer(name, arguments, span);
-            return if is_integer { self.exact(folded, span) } else { Ok(folded) };
+        if let Some((operation, empty)) = operation {
+            return self.fold(operation, empty, elements, is_integer, span).map(Array::scalar);
         }
-        let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
-            // The greatest and the least value (MLS §10.3.4.1), as the interpreter has them.
-            let [greatest, least] = match self.type_of(element) {
-                ValueType::Boolean => [1.0, 0.0],
-                ValueType::Integer => [i64::MAX as f64, i64::MIN as f64],
-                _ => [f64::MAX, f64::MIN],
-            };
-            let none = if reduction == Reduction::Min { greatest } else { least };
-            return scalar(self.fold(Binary::Add, none, &[]));
+        let (Some((first, rest)), Some(id)) =
+            (elements.split_first(), function::find(reduction.name()))
+        else {
+            let none = self.of_none(reduction, element, is_integer);
+            return Ok(Array::scalar(self.target.constant(none)));
         };
         let mut result = *first;
         for element in rest {
             result = self.target.apply(id, &[result, *element], self.live, span)?;
         }
-        scalar(result)
+        Ok(Array::scalar(result))
+    }
+
+    /// What a reduction makes of no elements: `min` the greatest value, `max` the least one
+    /// (MLS §10.3.4.1), as the interpreter has them.
+    pub(super) fn of_none(
+        &mut self,
+        reduction: Reduction,
+        element: &Expression,
+        is_integer: bool,
+    ) -> f64 {
+        if let Some(value) = reduction.of_none() {
+            return value as f64;
+        }
+        let [greatest, least] = match self.type_of(element) {
+            _ if is_integer => [i64::MAX as f64, i64::MIN as f64],
+            ValueType::Boolean => [1.0, 0.0],
+            _ => [f64::MAX, f64::MIN],
+        };
+        if reduction == Reduction::Min { greatest } else { least }
+    }
+
+    fn are_integers(&mut self, values: &[Expression]) -> bool {
+        values.iter().all(|value| self.type_of(value) == ValueType::Integer)
     }
 
     /// Whether the value of a built-in function is an Integer.
@@ -370,12 +435,21 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// The sum of arrays of these sizes, which follow one another (MLS §10.3.4.1).
-    fn sum_of_arrays(&mut self, dims: Vec<usize>, elements: &[T::Scalar]) -> Array<T::Scalar> {
+    fn sum_of_arrays(
+        &mut self,
+        dims: Vec<usize>,
+        elements: &[T::Scalar],
+        exact: bool,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
         let length: usize = dims.iter().product();
-        let column = |at: usize| elements[at..].iter().step_by(length).copied();
-        let columns: Vec<Vec<T::Scalar>> = (0..length).map(|at| column(at).collect()).collect();
-        let sums = columns.iter().map(|column| self.fold(Binary::Add, 0.0, column));
-        Array { dims, elements: sums.collect() }
+        let mut sums = Vec::with_capacity(length);
+        for at in 0..length {
+            let column = elements.iter().skip(at).step_by(length).copied();
+            let column: Vec<T::Scalar> = column.collect();
+            sums.push(self.fold(Binary::Add, 0.0, &column, exact, span)?);
+        }
+        Ok(Array { dims, elements: sums })
     }
 
     fn size(

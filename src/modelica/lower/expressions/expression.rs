@@ -342,17 +342,28 @@ impl<T: Target> Lowering<'_, T> {
         range.map_or(ValueType::Integer, |range| self.type_of(range))
     }
 
-    /// Every element of `f(e for i in …)`, after the dimensions of the iterators those of `e`.
+    /// Every element of `f(e for i in …)`, the last iterator outermost. An inner range may have another
+    /// length for each value of an iterator around it.
     pub(crate) fn reduction_elements(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
-    ) -> Result<Array<T::Scalar>, Diagnostic> {
-        match self.array_iteration(element, indices, element.span)? {
-            Lowered::Array(array) => Ok(array),
-            _ => Err(fault!(ARRAY_MISMATCH, "a reduction over elements that are not numbers")
-                .at(element.span)),
+    ) -> Result<Vec<Array<T::Scalar>>, Diagnostic> {
+        let Some((last, outer)) = indices.split_last() else {
+            return match self.lower(element)? {
+                Lowered::Array(array) => Ok(vec![array]),
+                _ => Err(fault!(ARRAY_MISMATCH, "a reduction over elements that are not numbers")
+                    .at(element.span)),
+            };
+        };
+        let mut elements = Vec::new();
+        for variable in self.loop_variables(last)? {
+            self.loops.push(variable);
+            let inner = self.reduction_elements(element, outer);
+            self.loops.pop();
+            elements.extend(inner?);
         }
+        Ok(elements)
     }
 
     fn constructor(

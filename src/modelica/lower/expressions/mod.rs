@@ -7,6 +7,7 @@ mod argument_sizes;
 mod arrays;
 mod builtins;
 mod calls;
+mod counted_reductions;
 mod expression;
 mod homotopy;
 mod message_text;
@@ -77,6 +78,18 @@ pub(crate) struct Branch<S> {
     pub(crate) asserted: usize,
     /// Values of the first branch.
     pub(crate) values: Vec<S>,
+}
+
+/// A loop under construction that is run when what is translated runs.
+pub(crate) struct CountedLoop<S> {
+    /// The loop variable.
+    pub(crate) variable: S,
+    /// What the iterations so far have made.
+    pub(crate) value: S,
+    /// Where an iteration begins in the code.
+    pub(crate) start: usize,
+    /// The jump out of the loop, after the last iteration.
+    pub(crate) exit: usize,
 }
 
 /// Operations of one operand.

@@ -56,11 +56,10 @@ impl<T: Target> Lowering<'_, T> {
             };
         }
         let b = self.array(right)?;
-        let may_be_inexact = self.may_be_inexact(operator, [&a, &b]);
-        let array = self.of_arrays(operator, a, b, span)?;
-        let is_integer = may_be_inexact
+        let is_integer = self.may_be_inexact(operator, [&a, &b])
             && self.type_of(right) == ValueType::Integer
             && self.type_of(left) == ValueType::Integer;
+        let array = self.of_arrays(operator, a, b, is_integer, span)?;
         let array = if is_integer { self.exact(array, span)? } else { array };
         Ok(Lowered::Array(array))
     }
@@ -83,12 +82,14 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// An operation on numbers.
+    /// An operation on numbers; `exact` if all are Integers, as which what it computes on the way must be
+    /// exact.
     fn of_arrays(
         &mut self,
         operator: BinaryOperator,
         a: Array<T::Scalar>,
         b: Array<T::Scalar>,
+        exact: bool,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         match operator {
@@ -99,14 +100,14 @@ impl<T: Target> Lowering<'_, T> {
             BinaryOperator::ElementwiseMultiply => self.elementwise(Binary::Mul, a, b, span),
             BinaryOperator::ElementwiseDivide => self.elementwise(Binary::Div, a, b, span),
             BinaryOperator::ElementwisePower => self.elementwise(Binary::Pow, a, b, span),
-            BinaryOperator::Multiply => self.product(a, b, span),
+            BinaryOperator::Multiply => self.product(a, b, exact, span),
             BinaryOperator::Divide if b.dims.is_empty() => {
                 self.elementwise(Binary::Div, a, b, span)
             }
             BinaryOperator::Divide => Err(fault!(ARRAY_MISMATCH, "the divisor is an array";
                 help: "write `./` for element-wise division")
             .at(span)),
-            BinaryOperator::Power => self.power(a, b, span),
+            BinaryOperator::Power => self.power(a, b, exact, span),
             BinaryOperator::And => self.same_size(Binary::And, a, b, span),
             BinaryOperator::Or => self.same_size(Binary::Or, a, b, span),
             BinaryOperator::Less => self.compare(RelationOperator::Less, a, b, span),
@@ -318,6 +319,7 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         a: Array<T::Scalar>,
         b: Array<T::Scalar>,
+        exact: bool,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         if a.dims.is_empty() || b.dims.is_empty() {
@@ -332,14 +334,12 @@ impl<T: Target> Lowering<'_, T> {
         let mut elements = Vec::with_capacity(rows * columns);
         for row in 0..rows {
             for column in 0..columns {
-                let products: Vec<T::Scalar> = (0..inner)
-                    .map(|k| {
-                        let (x, y) =
-                            (a.elements[row * inner + k], b.elements[k * columns + column]);
-                        self.target.binary(Binary::Mul, x, y)
-                    })
-                    .collect();
-                elements.push(self.fold(Binary::Add, 0.0, &products));
+                let factors = (0..inner)
+                    .map(|k| (a.elements[row * inner + k], b.elements[k * columns + column]));
+                let products = factors.map(|(x, y)| self.target.binary(Binary::Mul, x, y));
+                let products = Array::vector(products.collect());
+                let products = if exact { self.exact(products, span)? } else { products };
+                elements.push(self.fold(Binary::Add, 0.0, &products.elements, exact, span)?);
             }
         }
         Ok(Array { dims, elements })
@@ -349,6 +349,7 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         a: Array<T::Scalar>,
         b: Array<T::Scalar>,
+        exact: bool,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         if a.dims.is_empty() && b.dims.is_empty() {
@@ -390,7 +391,7 @@ impl<T: Target> Lowering<'_, T> {
         }
         let mut result = a.clone();
         for _ in 1..exponent as usize {
-            result = self.product(result, a.clone(), span)?;
+            result = self.product(result, a.clone(), exact, span)?;
         }
         Ok(result)
     }
@@ -401,13 +402,21 @@ impl<T: Target> Lowering<'_, T> {
         Array { dims: vec![n, n], elements }
     }
 
-    /// `a op b op …`; `empty` without elements.
-    pub(super) fn fold(&mut self, op: Binary, empty: f64, elements: &[T::Scalar]) -> T::Scalar {
-        match elements.split_first() {
-            None => self.target.constant(empty),
-            Some((first, rest)) => {
-                rest.iter().fold(*first, |sum, element| self.target.binary(op, sum, *element))
-            }
-        }
+    /// `a op b op …`; `empty` without elements. Of Integers, what it comes to on the way is exact as well.
+    pub(super) fn fold(
+        &mut self,
+        op: Binary,
+        empty: f64,
+        elements: &[T::Scalar],
+        exact: bool,
+        span: Span,
+    ) -> Result<T::Scalar, Diagnostic> {
+        let Some((first, rest)) = elements.split_first() else {
+            return Ok(self.target.constant(empty));
+        };
+        rest.iter().try_fold(*first, |total, element| {
+            let total = Array::scalar(self.target.binary(op, total, *element));
+            Ok(if exact { self.exact(total, span)? } else { total }.elements[0])
+        })
     }
 }

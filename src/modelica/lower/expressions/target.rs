@@ -1,6 +1,6 @@
 //! What expressions become: the equations of a model, statements that are inlined into them, or code.
 
-use super::{Array, Binary, Branch, Choice, ClockedCall, Lowered, StringPart, Unary};
+use super::{Array, Binary, Branch, Choice, ClockedCall, CountedLoop, Lowered, StringPart, Unary};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
@@ -121,6 +121,29 @@ pub(crate) trait ConditionalValues: Operations {
         branch: Branch<Self::Scalar>,
         values: &[Self::Scalar],
     ) -> Vec<Self::Scalar>;
+    /// Whether loops are run when what is translated runs: [`ConditionalValues::begin_counted_loop`].
+    fn runs_loops(&self) -> bool {
+        false
+    }
+    /// Begins a loop over `start:step:stop`, which is run when what is translated runs, with a value
+    /// that each iteration changes; `None` where the ranges of all loops must be known.
+    fn begin_counted_loop(
+        &mut self,
+        range: [Self::Scalar; 3],
+        value: Self::Scalar,
+    ) -> Option<CountedLoop<Self::Scalar>> {
+        let _ = (range, value);
+        None
+    }
+    /// Ends an iteration, after which the value is another one; returns it as it is after the loop.
+    fn end_counted_loop(
+        &mut self,
+        counted: CountedLoop<Self::Scalar>,
+        value: Self::Scalar,
+    ) -> Self::Scalar {
+        let _ = counted;
+        value
+    }
 }
 
 /// Gives what references to variables stand for.

@@ -11,17 +11,22 @@ use crate::bytecode::Instruction;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::execute::execute;
+use crate::fault;
+use crate::functions::{self, Meaning};
+use crate::inference::subscript_uses;
 use crate::lower::errors::NO_CONSTANT_VALUE;
 use crate::lower::expressions::{Lowered, Operations as _};
 use crate::name::Ident;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, Statement, StatementKind,
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
 use crate::syntax::visit::{Visit, walk_expression, walk_reference};
 
 /// The largest dimension of arrays for which a statement is compiled size by size.
 const MOST: usize = 64;
+/// A value of an Integer that fits no statement in which arrays of the largest dimension bound it.
+const BEYOND: usize = 2 * MOST + 1;
 /// Integers that decide sizes of one statement: `y[i:j] := x[k:k + j - i]` has three.
 const MAX_INTEGERS: usize = 3;
 
@@ -108,16 +113,14 @@ impl Body<'_, '_> {
         largest: usize,
     ) -> Result<(), Diagnostic> {
         let Some(integer) = self.integer(name) else { return Ok(()) };
+        self.check_bounded(s, (name, integer))?;
         let (mut ends, mut refused, mut n_possible) = (Vec::new(), None, 0);
         for number in 0..=largest {
             let mark = self.mark();
             let value = Operand::Constant(number as f64);
             let is_it = self.relation(RelationOperator::Equal, integer, value, true, s.span);
             let skip = self.emitter.jump_unless(is_it);
-            self.bind(name, value);
-            let compiled = self.statement_of_any_size(s);
-            self.bind(name, integer);
-            match compiled {
+            match self.statement_with(s, (name, integer), value) {
                 Ok(()) => {
                     n_possible += 1;
                     ends.push(self.emitter.jump());
@@ -140,6 +143,45 @@ impl Body<'_, '_> {
         self.emitter.emit(Instruction::Assert { a, message });
         ends.into_iter().for_each(|end| self.emitter.land(end));
         Ok(())
+    }
+
+    /// The statement where an Integer has another operand than its own.
+    fn statement_with(
+        &mut self,
+        s: &Statement,
+        (name, own): (Ident, Operand),
+        other: Operand,
+    ) -> Result<(), Diagnostic> {
+        self.bind(name, other);
+        let compiled = self.statement_of_any_size(s);
+        self.bind(name, own);
+        compiled
+    }
+
+    /// Refuses a statement that makes arrays of any size that an Integer gives, as `sum(1:n)` does.
+    fn check_bounded(
+        &mut self,
+        s: &Statement,
+        integer: (Ident, Operand),
+    ) -> Result<(), Diagnostic> {
+        let mut made = MadeArrays { name: integer.0, found: false };
+        made.statement(s);
+        if !made.found {
+            return Ok(());
+        }
+        let mark = self.mark();
+        let compiled = self.statement_with(s, integer, Operand::Constant(BEYOND as f64));
+        self.restore(&mark);
+        match compiled {
+            Ok(()) => Err(fault!(
+                NO_CONSTANT_VALUE,
+                "the sizes of arrays here depend on `{}`, whose value is not known at translation",
+                integer.0
+            )
+            .at(s.span)),
+            Err(e) if e.code == NO_CONSTANT_VALUE => Err(e),
+            Err(_) => Ok(()),
+        }
     }
 
     /// The register of a scalar Integer of the function or of a loop.
@@ -235,4 +277,60 @@ impl Visit for Names {
         }
         walk_reference(self, reference);
     }
+}
+
+/// Looks for arrays that a statement makes in a size that an Integer gives: `zeros(n)`, `1:n`. Those of
+/// subscripts, and of iterators that are subscripts, are bounded by the arrays that these choose from.
+struct MadeArrays {
+    name: Ident,
+    found: bool,
+}
+
+impl MadeArrays {
+    fn depends(&self, e: &Expression) -> bool {
+        let mut names = Names::default();
+        names.expression(e);
+        names.all.contains(&self.name)
+    }
+
+    fn size(&mut self, e: &Expression) {
+        self.found |= self.depends(e);
+    }
+
+    fn iterators(&mut self, element: &Expression, indices: &[ForIndex]) {
+        for index in indices {
+            let uses = subscript_uses(index.name.node, &|search| search.expression(element));
+            if let (Some(range), true) = (&index.range, uses.is_empty()) {
+                self.size(range);
+            }
+        }
+        self.expression(element);
+    }
+}
+
+impl Visit for MadeArrays {
+    fn expression(&mut self, expression: &Expression) {
+        match &expression.kind {
+            ExpressionKind::Range { .. } => self.size(expression),
+            ExpressionKind::ArrayIteration { element, indices } => {
+                self.iterators(element, indices);
+            }
+            ExpressionKind::Call { arguments, .. } if !arguments.iterators.is_empty() => {
+                arguments.positional.iter().for_each(|e| self.iterators(e, &arguments.iterators));
+            }
+            ExpressionKind::Call { function, arguments } => {
+                let named = function.as_ident().and_then(|name| functions::find(name.as_str()));
+                if let Some(Meaning::Plan(_, known)) = named.map(|entry| entry.meaning) {
+                    let sizes = arguments.positional.iter().enumerate();
+                    sizes.filter(|(at, _)| known.contains(*at)).for_each(|(_, e)| self.size(e));
+                }
+                walk_expression(self, expression);
+            }
+            ExpressionKind::Subscripted { base, .. } => self.expression(base),
+            _ => walk_expression(self, expression),
+        }
+    }
+
+    /// Its subscripts are bounded by the array.
+    fn reference(&mut self, _: &ComponentReference) {}
 }

@@ -199,7 +199,22 @@ impl<'a, 'f> Body<'a, 'f> {
 
     fn counted(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let range = self.iterated(index)?;
-        let (counter, value) = (self.emitter.block(1), self.emitter.block(1));
+        let counting = self.begin_counting(range);
+        self.breaks.push(Vec::new());
+        let value_type = self.lowering().type_of_index(index);
+        let value = Operand::Register(counting.variable);
+        self.loops.push(LoopVariable { name: index.name.node, value, value_type });
+        let iteration = body.execute(self);
+        self.loops.pop();
+        iteration?;
+        self.emitter.jump_to(counting.start);
+        self.emitter.land(counting.exit);
+        Ok(self.end_loop())
+    }
+
+    /// The head of a loop, with its variable.
+    pub(super) fn begin_counting(&mut self, range: Iterated) -> Counting {
+        let (counter, variable) = (self.emitter.block(1), self.emitter.block(1));
         let one = self.emitter.register(Operand::Constant(1.0));
         let goes_on = self.emitter.block(1);
         self.emitter.emit(Instruction::Constant { d: counter, value: 0.0 });
@@ -210,24 +225,15 @@ impl<'a, 'f> Body<'a, 'f> {
         let exit = self.emitter.jump_unless(Operand::Register(goes_on));
         match range {
             Iterated::Range { first, .. } => {
-                self.emitter.emit(Instruction::Mul { d: value, a: counter, b: first + 1 });
-                self.emitter.emit(Instruction::Add { d: value, a: first, b: value });
+                self.emitter.emit(Instruction::Mul { d: variable, a: counter, b: first + 1 });
+                self.emitter.emit(Instruction::Add { d: variable, a: first, b: variable });
             }
             Iterated::Elements { first, .. } => {
-                self.emitter.emit(Instruction::Load { d: value, base: first, offset: counter });
+                self.emitter.emit(Instruction::Load { d: variable, base: first, offset: counter });
             }
         }
         self.emitter.emit(Instruction::Add { d: counter, a: counter, b: one });
-        self.breaks.push(Vec::new());
-        let value_type = self.lowering().type_of_index(index);
-        let value = Operand::Register(value);
-        self.loops.push(LoopVariable { name: index.name.node, value, value_type });
-        let iteration = body.execute(self);
-        self.loops.pop();
-        iteration?;
-        self.emitter.jump_to(start);
-        self.emitter.land(exit);
-        Ok(self.end_loop())
+        Counting { variable, start, exit }
     }
 
     /// What a loop runs over, computed once.
@@ -241,15 +247,20 @@ impl<'a, 'f> Body<'a, 'f> {
                 None => Operand::Constant(1.0),
             };
             let stop = self.lowering().scalar(stop)?;
-            let first = self.emitter.copies(&[start, step, stop]);
-            let iterations = self.emitter.block(1);
-            self.emitter.emit(Instruction::Iterations { d: iterations, range: first });
-            return Ok(Iterated::Range { first, iterations });
+            return Ok(self.range([start, step, stop]));
         }
         let variables = self.lowering().loop_variables(index)?;
         let elements: Vec<_> = variables.iter().map(|variable| variable.value).collect();
         let first = self.emitter.copies(&elements);
         Ok(Iterated::Elements { first, n: elements.len() })
+    }
+
+    /// The range from a start by steps to a stop, computed once.
+    pub(super) fn range(&mut self, range: [Operand; 3]) -> Iterated {
+        let first = self.emitter.copies(&range);
+        let iterations = self.emitter.block(1);
+        self.emitter.emit(Instruction::Iterations { d: iterations, range: first });
+        Iterated::Range { first, iterations }
     }
 
     fn assertion(
@@ -405,9 +416,20 @@ impl Domain for Body<'_, '_> {
     }
 }
 
+/// The head of a loop.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Counting {
+    /// The loop variable.
+    pub(super) variable: Register,
+    /// Where an iteration begins.
+    pub(super) start: usize,
+    /// The jump out of the loop, after the last iteration.
+    pub(super) exit: usize,
+}
+
 /// What a loop runs over.
 #[derive(Debug, Clone, Copy)]
-enum Iterated {
+pub(super) enum Iterated {
     /// Three registers from `first` on, and one for the number of iterations.
     Range { first: Register, iterations: Register },
     /// Elements in a row.

@@ -1,15 +1,15 @@
 //! Expressions of a function being compiled.
 
 use super::emitter::Operand;
-use super::statements::Body;
+use super::statements::{Body, Counting};
 use crate::bytecode::{Elementary, Instruction};
 use crate::diag::Diagnostic;
 use crate::elementary;
 use crate::eval::{Function, ValueType};
 use crate::flatten::FlatModel;
 use crate::lower::expressions::{
-    Array, Binary, Branch, Choice, ConditionalValues, FunctionCalls, Lowered, Operations,
-    StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
+    Array, Binary, Branch, Choice, ConditionalValues, CountedLoop, FunctionCalls, Lowered,
+    Operations, StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
 };
 use crate::name::Ident;
 use crate::source::Span;
@@ -184,6 +184,29 @@ impl ConditionalValues for Body<'_, '_> {
             self.emitter.land(end);
         }
         branch.values
+    }
+
+    fn runs_loops(&self) -> bool {
+        true
+    }
+
+    fn begin_counted_loop(
+        &mut self,
+        range: [Operand; 3],
+        value: Operand,
+    ) -> Option<CountedLoop<Operand>> {
+        let value = Operand::Register(self.emitter.copies(&[value]));
+        let range = self.range(range);
+        let Counting { variable, start, exit } = self.begin_counting(range);
+        Some(CountedLoop { variable: Operand::Register(variable), value, start, exit })
+    }
+
+    fn end_counted_loop(&mut self, counted: CountedLoop<Operand>, value: Operand) -> Operand {
+        let d = self.emitter.register(counted.value);
+        self.emitter.copy(d, &[value]);
+        self.emitter.jump_to(counted.start);
+        self.emitter.land(counted.exit);
+        counted.value
     }
 }
 
