@@ -622,6 +622,35 @@ fn integers_hold_no_reals() {
     );
 }
 
+/// An enumeration has the values of its literals alone (MLS §4.9.5).
+#[test]
+fn enumerations_have_no_other_values_than_literals() {
+    let model = |body: &str| format!("model M type E = enumeration(a, b, c); {body} end M;");
+    let code = "type-mismatch";
+    refused(&model("E e; algorithm e := 7;"), code);
+    refused(&model("E e; equation e = 7;"), code);
+    refused(&model("E e(start = 7); equation e = E.a;"), code);
+    refused(&model("E e = E(4);"), code);
+    refused(&model("E e = E(0);"), code);
+    accepted(&model("E e = E(3); Integer i = Integer(e); E f[2] = {E(i) for i in 1:2};"));
+    let numbered = model(
+        "parameter Integer k = 2; E e = E(k); E f(start = E.a, fixed = true); Integer n;
+        equation when time > 0.3 then f = E(Integer(pre(f)) + 1); end when; n = Integer(f);",
+    );
+    let run = simulated(&numbered, 1.0);
+    assert_eq!([run.last("e"), run.last("n")], [2.0, 2.0]);
+    for number in ["E(k)", "E(integer(3*time) + 2)", "f(k)"] {
+        let text = model(&format!(
+            "parameter Integer k = 4; E e = {number};
+            function f input Integer i; output E e; algorithm e := E(i); end f;"
+        ));
+        let (program, _, _, ended) = crate::support::simulated::attempt(&text, 1.0);
+        let error = program.explain(&ended.expect_err("there is no such literal"));
+        let said = &error.message;
+        assert!(said.contains("has no literal with this number"), "{number}: {said}");
+    }
+}
+
 /// Outside of when-clauses, only what is discrete has a value before (MLS §3.7.5.1).
 #[test]
 fn continuous_variables_have_no_value_before_outside_of_when_clauses() {

@@ -61,6 +61,9 @@ impl CheckedType {
             (CheckedType::Real | CheckedType::Integer, CheckedType::Enumeration(_)) => {
                 Some("write `Integer(e)`, the number of the literal")
             }
+            (CheckedType::Enumeration(_), CheckedType::Integer) => {
+                Some("write a literal, such as `E.a`; `E(i)` is the literal with the number `i`")
+            }
             (CheckedType::Boolean, CheckedType::Real | CheckedType::Integer) => {
                 Some("compare it, as in `x > 0`")
             }

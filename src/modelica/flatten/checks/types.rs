@@ -13,6 +13,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
+use crate::flatten::types::has_only_literals;
 use crate::functions::{self, Builtin, TypeRule};
 use crate::inference;
 use crate::name::Ident;
@@ -144,12 +145,12 @@ impl TypeCheck<'_, '_> {
         }
     }
 
-    /// A value that a statement assigns. Old libraries compute with enumerations.
+    /// A value that a statement assigns. Old libraries assign enumerations to numbers.
     fn assigned(&mut self, target: &ComponentReference, value: &Expression) {
-        let kinds = [self.types.kind_of_reference(target), self.types.type_of(value)];
-        if let Some(declared) = kinds[0]
-            && !kinds.iter().any(|kind| matches!(kind, Some(CheckedType::Enumeration(_))))
-        {
+        let Some(declared) = self.types.kind_of_reference(target) else { return };
+        let is_ordinal = declared.is_number()
+            && matches!(self.types.type_of(value), Some(CheckedType::Enumeration(_)));
+        if !is_ordinal {
             self.given(&format!("`{}`", target.name()), declared, value);
         }
     }
@@ -194,7 +195,9 @@ impl TypeCheck<'_, '_> {
             true => self.accepts(a, b) && self.accepts(b, a),
             false => self.same(a, b),
         };
-        if (self.with_values || are_records) && !fits {
+        // In the flat model literals of enumerations are numbers.
+        let is_number = matches!(a, CheckedType::Enumeration(_)) && has_only_literals(right);
+        if (self.with_values || are_records || is_number) && !fits {
             let message = format!("the other side of the equation is {}", self.name(a));
             self.mismatch(right, &message, b);
         }

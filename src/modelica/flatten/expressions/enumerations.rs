@@ -7,7 +7,7 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::expressions::local::Local;
-use crate::flatten::flat_expression::subscripted;
+use crate::flatten::flat_expression::{call, subscripted};
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -17,6 +17,7 @@ use crate::flatten::lookup::types::Type;
 use crate::flatten::types::Types;
 use crate::name::{Ident, Name};
 use crate::source::Span;
+use crate::symbolic::function::LITERAL_BY_NUMBER;
 use crate::syntax::ast::{
     Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, ReferencePart,
     Subscript,
@@ -161,8 +162,8 @@ impl Instantiation<'_> {
                         definition.name
                     )
                     .at(span)),
-                    ExpressionKind::Reference(_) => Ok(Some(ordinal(value))),
-                    _ => Ok(Some(value)),
+                    ExpressionKind::Integer(_) => Ok(Some(value)),
+                    _ => Ok(Some(literal_by_number(value, count))),
                 }
             }
             _ => Ok(None),
@@ -291,6 +292,13 @@ impl Types<'_> {
 pub(crate) fn all_booleans(span: Span) -> Expression {
     let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
     Expression::new(ExpressionKind::Array(vec![truth(false), truth(true)]), span)
+}
+
+/// A number as a literal of an enumeration with so many; another number is a fault.
+fn literal_by_number(number: Expression, count: i64) -> Expression {
+    let span = number.span;
+    let count = Expression::new(ExpressionKind::Integer(count), span);
+    call(&Name::from(Ident::new(LITERAL_BY_NUMBER)), vec![number, count], span)
 }
 
 /// A value of Integer or of an enumeration as the Integer that stands for it in the flat model.

@@ -10,12 +10,14 @@ use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
 
 mod elementary;
+mod enumeration;
 mod extremum;
 mod hyperbolic;
 mod random;
 mod rounding;
 mod trigonometric;
 
+pub(crate) use enumeration::LITERAL_BY_NUMBER;
 pub(crate) use rounding::{INTEGER_ARITHMETIC, LARGEST_INTEGER};
 
 const FAMILIES: &[&[Function]] = &[
@@ -25,6 +27,7 @@ const FAMILIES: &[&[Function]] = &[
     rounding::FUNCTIONS,
     trigonometric::FUNCTIONS,
     random::FUNCTIONS,
+    enumeration::FUNCTIONS,
 ];
 
 /// One function of the table.
