@@ -6,13 +6,15 @@
 use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::execution::Loops;
-use super::expressions::{Choice, Lowered, Lowering};
+use super::expressions::{Choice, Lowered, Lowering, field_of};
+use super::symbolic_target::RecordArray;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
 use crate::symbolic::{Expr, RelationOperator, VarId};
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+    ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Statement,
+    StatementKind, Subscript,
 };
 use crate::syntax::visit::Rewrite;
 
@@ -84,7 +86,7 @@ impl Builder<'_> {
     ) -> Result<Vec<AssignedScalar>, Diagnostic> {
         let flat = self.flat;
         let mut lowering = self.statement_lowering(loops);
-        let path = lowering.path(target)?;
+        let path = lowering.path(target).unwrap_or_default();
         let subscripts = &target.parts[target.parts.len() - 1].subscripts;
         let Some((position, _, variable)) = flat.variables.get_full(path.as_str()) else {
             return self.places_of_record(target, loops);
@@ -152,10 +154,8 @@ impl Builder<'_> {
         target: &ComponentReference,
         loops: &Loops,
     ) -> Result<Vec<AssignedScalar>, Diagnostic> {
-        let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
-        let mut lowering = self.statement_lowering(loops);
-        lowering.target.execution.raw += 1;
-        let value: Result<Lowered<Expr>, Diagnostic> = lowering.lower(&e);
+        self.execution.raw += 1;
+        let value = self.record_variables(target, loops);
         self.execution.raw -= 1;
         let mut scalars = Vec::new();
         value?.append_scalars(&mut scalars);
@@ -166,6 +166,71 @@ impl Builder<'_> {
             }
         };
         scalars.into_iter().enumerate().map(place).collect()
+    }
+
+    /// The variables of a record, or of an array of records or a part of it.
+    fn record_variables(
+        &mut self,
+        target: &ComponentReference,
+        loops: &Loops,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        let mut lowering = self.statement_lowering(loops);
+        for count in 1..=target.parts.len() {
+            let parts = target.parts[..count].to_vec();
+            let path = lowering.path(&ComponentReference { parts, ..target.clone() })?;
+            if let Some(array) = lowering.target.array_of_records(&path) {
+                return part_of_array(
+                    &mut lowering,
+                    array,
+                    &target.parts[count - 1..],
+                    target.span,
+                );
+            }
+        }
+        let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
+        lowering.lower(&e)
+    }
+}
+
+/// What the parts of a reference choose of an array of records, the first of them the array itself.
+fn part_of_array(
+    lowering: &mut Lowering<'_, Builder<'_>>,
+    array: RecordArray,
+    parts: &[ReferencePart],
+    span: Span,
+) -> Result<Lowered<Expr>, Diagnostic> {
+    let (mut value, mut rank) = (array.value, array.rank);
+    for (at, part) in parts.iter().enumerate() {
+        if at > 0 {
+            value = field_of(&value, part.name, span)?.clone();
+        }
+        if part.subscripts.is_empty() {
+            continue;
+        }
+        let before = if at > 0 { rank } else { 0 };
+        let all = std::iter::repeat_n(Subscript::All(span), before);
+        let subscripts: Vec<Subscript> = all.chain(part.subscripts.iter().cloned()).collect();
+        let (first, n) = (rank_of_first(&value), subscripts.len());
+        value = lowering.elements_of(value, &subscripts, span)?;
+        if at == 0 {
+            rank = (rank + rank_of_first(&value)).saturating_sub(first);
+        } else if at + 1 < parts.len() && n > 0 && rank > 0 {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "a slice of an array of records in an array of records cannot be assigned";
+                help: "write a loop")
+            .at(span));
+        }
+    }
+    Ok(value)
+}
+
+/// How many dimensions the first array in a value has.
+fn rank_of_first(value: &Lowered<Expr>) -> usize {
+    match value {
+        Lowered::Array(array) => array.dims.len(),
+        Lowered::Record(fields) => fields.first().map_or(0, |(_, field)| rank_of_first(field)),
+        _ => 0,
     }
 }
 

@@ -8,12 +8,13 @@ use super::equation::{Assertion, Level};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{
     Array, Binary, Branch, ClockedCall, ConditionalValues, FunctionCalls, Lowered, Operations,
-    StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
+    StringOperations, StringPart, TimeOperators, Unary, VariableReferences, stacked,
 };
 use crate::diag::Diagnostic;
 
 use crate::eval::{Function, ValueType};
 use crate::fault;
+use crate::flatten::flat_reference;
 use crate::flatten::{BaseType, FlatModel, Variability};
 use crate::functions::{Builtin, Clocked, Temporal};
 use crate::name::{Ident, Name};
@@ -23,6 +24,7 @@ use crate::symbolic::{Expr, Node, RelationOperator, VarId};
 use crate::syntax::ast::{ComponentReference, Expression};
 use indexmap::IndexSet;
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl Operations for Builder<'_> {
@@ -512,7 +514,6 @@ impl Builder<'_> {
         variables
     }
 
-    /// All variables below a path, as a record.
     /// What a scalar variable stands for in the expression that is made.
     fn scalar_now(&mut self, id: u32) -> Expr {
         match self.dae.variables[id as usize].kind {
@@ -522,17 +523,13 @@ impl Builder<'_> {
         }
     }
 
+    /// All variables below a path, as a record.
     fn record(&mut self, path: &str) -> Option<Lowered<Expr>> {
         let prefix = format!("{path}.");
-        let flat = self.flat;
         let mut names: IndexSet<Ident> = IndexSet::new();
-        for name in flat.variables.keys() {
+        for name in self.flat.variables.keys() {
             if let Some(rest) = name.strip_prefix(&prefix) {
-                let field = Name::parse(rest).first()?;
-                if field.as_str().contains('[') {
-                    return None;
-                }
-                names.insert(field);
+                names.insert(flat_reference(rest, Span::NONE).parts.first()?.name);
             }
         }
         if names.is_empty() {
@@ -542,8 +539,52 @@ impl Builder<'_> {
         for name in names {
             let full = format!("{prefix}{name}");
             let reference = ComponentReference::from_name(&Name::parse(&full), Span::NONE);
-            fields.push((name, self.reference(&full, &reference).ok()?));
+            let value = self.reference(&full, &reference).ok();
+            fields.push((name, value.or_else(|| Some(self.array_of_records(&full)?.value))?));
         }
         Some(Lowered::Record(fields))
     }
+
+    /// All variables below the elements of an array of components, as a record of arrays.
+    pub(super) fn array_of_records(&mut self, path: &str) -> Option<RecordArray> {
+        let prefix = format!("{path}[");
+        let mut elements: BTreeSet<Vec<usize>> = BTreeSet::new();
+        for name in self.flat.variables.keys() {
+            if let Some((indices, rest)) =
+                name.strip_prefix(&prefix).and_then(|rest| rest.split_once(']'))
+                && rest.starts_with('.')
+            {
+                let indices = indices.split(',').map(|index| index.parse().ok());
+                elements.insert(indices.collect::<Option<_>>()?);
+            }
+        }
+        let elements: Vec<Vec<usize>> = elements.into_iter().collect();
+        let rank = elements.first()?.len();
+        let value = self.stacked_below(&prefix, &elements, 0)?;
+        Some(RecordArray { value, rank })
+    }
+
+    /// The elements with these indices, in order, from a dimension on.
+    fn stacked_below(
+        &mut self,
+        prefix: &str,
+        elements: &[Vec<usize>],
+        dimension: usize,
+    ) -> Option<Lowered<Expr>> {
+        let first = elements.first()?;
+        if dimension == first.len() {
+            let indices: Vec<String> = first.iter().map(usize::to_string).collect();
+            return self.record(&format!("{prefix}{}]", indices.join(",")));
+        }
+        let parts = elements.chunk_by(|a, b| a[dimension] == b[dimension]);
+        let parts = parts.map(|part| self.stacked_below(prefix, part, dimension + 1));
+        stacked(parts.collect::<Option<_>>()?, Span::NONE).ok()
+    }
+}
+
+/// An array of records, as a record of arrays.
+pub(super) struct RecordArray {
+    pub(super) value: Lowered<Expr>,
+    /// How many dimensions the array has, which precede those of its components.
+    pub(super) rank: usize,
 }

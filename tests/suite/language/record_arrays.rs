@@ -155,3 +155,42 @@ fn subscripts_of_slices_of_records_belong_to_their_parts() {
         assert!((value - sum).abs() < 1e-9 * sum.abs(), "{variable}, {slice}: {value}, not {sum}");
     }
 }
+
+/// Values at 1 s, computed by hand.
+#[test]
+fn arrays_of_records_are_assigned_in_algorithms() {
+    let models = include_str!("../../data/models/record_arrays_assigned.mo");
+    let of = |model: &str| format!("{models}\nmodel Own = Assigned.{model};");
+    let expected: &[(&str, &[(&str, f64)])] = &[
+        ("Whole", &[("b[1].v", 2.0), ("b[1].w[1]", 2.0), ("b[2].v", 1.0), ("b[2].w[2]", 1.0)]),
+        (
+            "Slices",
+            &[
+                ("b[1].v", 8.0),
+                ("b[2].v", 9.0),
+                ("b[3].v", 100.0),
+                ("b[2].w[1]", 10.0),
+                ("b[2].w[2]", 1.0),
+                ("c[2].v", 100.0),
+                ("c[2].w[1]", 20.0),
+            ],
+        ),
+        ("Elements", &[("b[2].v", 1.0), ("b[2].w[2]", 3.0), ("b[3].v", 3.0), ("b[3].w[1]", 2.0)]),
+        ("Nested", &[("n[1].r[2].v", 2.0), ("n[2].r[1].w[2]", 6.0), ("n[2].r[2].w[1]", 2.0)]),
+        ("Matrix", &[("b[2,1].v", 60.0), ("b[2,2].v", 4.0), ("b[1,2].w[1]", 2.0)]),
+        ("Branches", &[("b[2].v", 6.0), ("b[2].w[2]", 3.0)]),
+        ("Outputs", &[("b[2].v", 2.0), ("y", 1.0)]),
+        ("Events", &[("b[2].v", 2.0), ("b[2].w[1]", 2.0)]),
+        ("Parts", &[("p[1].s", 3.0), ("p[2].s", 6.0), ("p[2].b[3].w[1]", 3.0)]),
+        ("Iterators", &[("s", 36.0), ("t[2]", 6.0), ("u", 12.0), ("q[1]", 2.0)]),
+    ];
+    for (model, values) in expected {
+        let run = simulated(&of(model), 1.0);
+        for (name, value) in *values {
+            let found = run.last(name);
+            assert!((found - value).abs() < 1e-9, "{model}: {name} = {found}");
+        }
+    }
+    let said = crate::support::simulated::refused(&of("WrongSize"));
+    assert!(said.starts_with("array-mismatch"), "{said}");
+}

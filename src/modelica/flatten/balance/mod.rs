@@ -8,6 +8,7 @@ mod sets;
 pub use local::LocalBalance;
 
 use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
+use super::flat_expression::flat_reference;
 use super::{FlatModel, Variability};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
@@ -16,8 +17,9 @@ use crate::inference::{self, Sizes, SizesOfNames};
 use crate::source::Span;
 use crate::syntax::ast::{
     CausalityPrefix, ComponentReference, Equation, EquationKind, Expression, ExpressionKind,
-    targets,
+    Subscript, targets,
 };
+use crate::syntax::print;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -181,10 +183,9 @@ pub(crate) fn path(reference: &ComponentReference) -> Cow<'static, str> {
                 .subscripts
                 .iter()
                 .map(|subscript| match subscript {
-                    crate::syntax::ast::Subscript::Index(Expression {
-                        kind: ExpressionKind::Integer(n),
-                        ..
-                    }) => n.to_string(),
+                    Subscript::Index(Expression { kind: ExpressionKind::Integer(n), .. }) => {
+                        n.to_string()
+                    }
                     _ => ":".to_owned(),
                 })
                 .collect();
@@ -194,20 +195,43 @@ pub(crate) fn path(reference: &ComponentReference) -> Cow<'static, str> {
     path.into()
 }
 
-/// Number of scalars of variables, and of records, whose components begin with their names.
+/// Number of scalars of variables, and of records and arrays of records, whose components begin with
+/// their names.
 fn scalars_of<'a>(named: impl Iterator<Item = &'a ComponentReference>, model: &FlatModel) -> usize {
-    let names: BTreeSet<String> = named.map(|target| path(target).into_owned()).collect();
+    let mut names: BTreeSet<String> = BTreeSet::new();
     let mut variables: BTreeSet<&str> = BTreeSet::new();
-    for name in &names {
-        match model.variables.get_key_value(name.as_str()) {
+    for target in named {
+        let is_new = names.insert(print::reference(target));
+        match model.variables.get_key_value(&*path(target)) {
             Some((name, _)) => variables.extend([&**name]),
-            None => {
-                let is_inside = |path: &&str| {
-                    path.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('.'))
-                };
-                variables.extend(model.variables.keys().map(|key| &**key).filter(is_inside));
+            None if is_new => {
+                let all = model.variables.keys().map(|key| &**key);
+                variables.extend(all.filter(|variable| is_part(variable, target)));
             }
+            None => {}
         }
     }
     variables.into_iter().map(|name| model.variables[name].len()).sum()
+}
+
+/// Whether a variable is a component of what a reference names: a record, elements of an array of records,
+/// or a component of all of these.
+fn is_part(variable: &str, of: &ComponentReference) -> bool {
+    if !of.parts.first().is_some_and(|part| variable.starts_with(part.name.as_str())) {
+        return false;
+    }
+    let own = flat_reference(variable, of.span).parts;
+    let literal = |subscript: &Subscript| match subscript {
+        Subscript::Index(Expression { kind: ExpressionKind::Integer(n), .. }) => Some(*n),
+        _ => None,
+    };
+    // A subscript that is not a number may be any.
+    let fits = |(one, other): (&Subscript, &Subscript)| {
+        let numbers = literal(one).zip(literal(other));
+        numbers.is_none_or(|(one, other)| one == other)
+    };
+    own.len() >= of.parts.len()
+        && own.iter().zip(&of.parts).all(|(own, part)| {
+            own.name == part.name && own.subscripts.iter().zip(&part.subscripts).all(fits)
+        })
 }

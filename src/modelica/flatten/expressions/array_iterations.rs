@@ -58,6 +58,16 @@ fn has_no_elements(e: &Expression) -> bool {
     }
 }
 
+/// The elements of nested array constructors so many levels below.
+fn elements_below(e: &Expression, levels: usize) -> Vec<&Expression> {
+    match (&e.kind, levels) {
+        (ExpressionKind::Array(elements), 1..) => {
+            elements.iter().flat_map(|element| elements_below(element, levels - 1)).collect()
+        }
+        _ => vec![e],
+    }
+}
+
 impl Instantiation<'_> {
     /// `{element for i in range}`.
     pub(crate) fn array_iteration(
@@ -73,7 +83,7 @@ impl Instantiation<'_> {
         match self.iterated(element, &indices, context, local) {
             Ok((resolved, iterators)) => {
                 // Records are distinguished element by element.
-                if self.types().record_of(&resolved, local).is_some()
+                if self.has_records(&resolved, &iterators, local)
                     && let Some(written) = self.unrolled(element, &indices, context, local)
                 {
                     return written;
@@ -103,19 +113,28 @@ impl Instantiation<'_> {
         let visit = |uses: &mut dyn Visit| uses.expression(element);
         let indices = self.with_ranges(&arguments.iterators, context, local, &visit)?;
         let (element, iterators) = match self.iterated(element, &indices, context, local) {
-            Ok((resolved, iterators)) => match self.types().record_of(&resolved, local) {
-                Some(_) => match self.unrolled(element, &indices, context, local) {
+            Ok((resolved, iterators)) if self.has_records(&resolved, &iterators, local) => {
+                match self.unrolled(element, &indices, context, local) {
                     Some(elements) => (elements?, Vec::new()),
                     None => (resolved, iterators),
-                },
-                None => (resolved, iterators),
-            },
+                }
+            }
+            Ok(iterated) => iterated,
             Err(error) => match self.unrolled(element, &indices, context, local) {
                 Some(elements) => (elements?, Vec::new()),
                 None => return Err(error),
             },
         };
         Ok(Arguments { positional: vec![element], named: Vec::new(), iterators })
+    }
+
+    /// Whether elements are records, or iterators run over records.
+    fn has_records(&self, element: &Expression, iterators: &[ForIndex], local: &Local) -> bool {
+        let of_records = |index: &ForIndex| {
+            let range = index.range.as_ref();
+            range.is_some_and(|range| self.elements_of_records(range, local).is_some())
+        };
+        self.types().record_of(element, local).is_some() || iterators.iter().any(of_records)
     }
 
     /// `sum(e for i in …)` of arrays e where its elements had to be written out, or where there are
@@ -129,17 +148,16 @@ impl Instantiation<'_> {
         let ([element], false) = (&resolved.positional[..], written.iterators.is_empty()) else {
             return None;
         };
-        if let (ExpressionKind::Array(elements), true) =
-            (&element.kind, resolved.iterators.is_empty())
-        {
+        if let (ExpressionKind::Array(_), true) = (&element.kind, resolved.iterators.is_empty()) {
+            let elements = elements_below(element, written.iterators.len());
             let (first, rest) = elements.split_first()?;
             if rest.len() > MAX_SUMMANDS || self.shape_of(first)?.is_empty() {
                 return None;
             }
-            let add = |left: Expression, right: &Expression| {
-                Expression::operation(BinaryOperator::Add, left, right.clone(), span)
+            let add = |left: Expression, right: &&Expression| {
+                Expression::operation(BinaryOperator::Add, left, (*right).clone(), span)
             };
-            return Some(rest.iter().fold(first.clone(), add));
+            return Some(rest.iter().fold((*first).clone(), add));
         }
         let mut ranges = resolved.iterators.iter().filter_map(|index| index.range.as_ref());
         let is_empty = |range| self.shape_of(range).is_some_and(|dims| dims == [0]);

@@ -251,12 +251,30 @@ impl Instantiation<'_> {
             None => self.resolve(range, context, local)?,
         };
         let mut iteration = local.clone();
-        for value in self.range_values(&resolved)? {
-            iteration.names.push((index.name.node, Some(literal(&value, span))));
+        let values = match self.elements_of_records(&resolved, local) {
+            Some(records) => records.to_vec(),
+            None => self.range_values(&resolved)?.iter().map(|one| literal(one, span)).collect(),
+        };
+        for value in values {
+            iteration.names.push((index.name.node, Some(value)));
             self.each_iteration(inner, context, &iteration, visit)?;
             iteration.names.pop();
         }
         Ok(())
+    }
+
+    /// The elements of a range that are records: a loop variable stands for each of them in turn.
+    pub(crate) fn elements_of_records<'e>(
+        &self,
+        range: &'e Expression,
+        local: &Local,
+    ) -> Option<&'e [Expression]> {
+        match &range.kind {
+            ExpressionKind::Array(elements) if self.types().record_of(range, local).is_some() => {
+                Some(elements)
+            }
+            _ => None,
+        }
     }
 
     pub(crate) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {

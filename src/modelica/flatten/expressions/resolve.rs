@@ -14,12 +14,14 @@ use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::unknown;
 use crate::inference::is_arithmetic;
+use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
     Subscript, UnaryOperator,
 };
 use crate::value::Value;
+use std::sync::Arc;
 
 /// The deepest nesting of expressions, bindings that lead to one another included.
 const MAX_DEPTH: usize = 400;
@@ -338,6 +340,9 @@ impl Instantiation<'_> {
             if let Some(value) = local.get(first.name) {
                 return match value {
                     Some(value) if reference.as_ident().is_some() => Ok(value.clone()),
+                    Some(value) if reference.parts.len() > 1 => {
+                        self.part_of_value(value.clone(), reference, context, local)
+                    }
                     _ => self.local_reference(reference, context, local),
                 };
             }
@@ -357,6 +362,25 @@ impl Instantiation<'_> {
             }
         }
         self.constant(reference, context, local)
+    }
+
+    /// A component of the record that a loop variable stands for.
+    fn part_of_value(
+        &mut self,
+        value: Expression,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut value = value;
+        for (at, part) in reference.parts.iter().enumerate() {
+            if at > 0 {
+                value = component_of(value, part.name, reference.span);
+            }
+            let subscripts = self.subscripts(&part.subscripts, context, local)?;
+            value = subscripted(value, subscripts, reference.span);
+        }
+        Ok(value)
     }
 
     fn local_reference(
@@ -385,6 +409,16 @@ impl Classes<'_> {
         let known = self.tree.component_names(self.node_of(context));
         unknown::name(&reference.name(), &known, reference.span)
     }
+}
+
+/// A component of a record: the argument of its constructor, where it is written as such.
+fn component_of(record: Expression, name: Ident, span: Span) -> Expression {
+    if let ExpressionKind::Call { arguments, .. } = &record.kind
+        && let Some(argument) = arguments.named.iter().find(|one| one.name.node == name)
+    {
+        return argument.value.clone();
+    }
+    Expression::new(ExpressionKind::Field { base: Arc::new(record), name }, span)
 }
 
 fn is_boolean(e: &Expression) -> bool {

@@ -9,7 +9,6 @@ use crate::flatten::flat_expression::literal;
 use crate::flatten::functions::outer_names::names_any;
 use crate::flatten::functions::printing::PRINT;
 use crate::flatten::functions::table::FunctionTable;
-use crate::flatten::functions::unrolled::runs_over_strings;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::{Declaration, MemberState, Shape};
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -628,7 +627,7 @@ impl Instantiation<'_> {
         let mut resolved = Vec::with_capacity(statements.len());
         for statement in statements {
             match self.statement(statement, context, local) {
-                Ok(one) if runs_over_strings(&one) => {
+                Ok(one) if self.runs_over_values(&one, local) => {
                     match self.iterations_of_statement(statement, context, local) {
                         Some(iterations) => resolved.extend(iterations?),
                         None => resolved.push(one),
@@ -735,12 +734,43 @@ impl Instantiation<'_> {
             .at(span));
         }
         let e = Expression::new(ExpressionKind::Reference(target.clone()), span);
-        match record_or_variable(self.resolve(&e, context, local)?) {
+        let resolved = self.resolve(&e, context, local)?;
+        let resolved = match &resolved.kind {
+            ExpressionKind::Array(elements) => {
+                self.array_of_records(target, elements, context, local)?
+            }
+            _ => record_or_variable(resolved),
+        };
+        match resolved {
             Some(resolved) => Ok(resolved),
             None => {
                 Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span))
             }
         }
+    }
+}
+
+impl Instantiation<'_> {
+    /// The flat name of an array of records, or of a component of its elements: that of an element,
+    /// with the subscripts that are written. `None` without elements.
+    fn array_of_records(
+        &mut self,
+        written: &ComponentReference,
+        elements: &[Expression],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<ComponentReference>, Diagnostic> {
+        let Some(mut found) = elements.first().cloned().and_then(record_or_variable) else {
+            return Ok(None);
+        };
+        let Some(before) = found.parts.len().checked_sub(written.parts.len()) else {
+            return Ok(None);
+        };
+        for (part, written) in found.parts[before..].iter_mut().zip(&written.parts) {
+            part.subscripts = self.subscripts(&written.subscripts, context, local)?;
+        }
+        found.span = written.span;
+        Ok(Some(found))
     }
 }
 
@@ -795,13 +825,14 @@ impl FunctionTable {
 fn record_or_variable(e: Expression) -> Option<ComponentReference> {
     match e.kind {
         ExpressionKind::Reference(reference) => Some(reference),
-        ExpressionKind::Call { arguments, .. } => {
-            let first = arguments.named.into_iter().next()?;
-            let mut path = record_or_variable(first.value)?;
+        ExpressionKind::Call { arguments, .. } => arguments.named.into_iter().find_map(|one| {
+            let mut path = record_or_variable(one.value)?;
             let component = path.parts.pop()?;
-            let is_record = component.name == first.name.node && !path.parts.is_empty();
+            let is_record = component.name == one.name.node && !path.parts.is_empty();
             is_record.then_some(path)
-        }
+        }),
+        // A component that is an array of records.
+        ExpressionKind::Array(elements) => record_or_variable(elements.into_iter().next()?),
         _ => None,
     }
 }

@@ -34,18 +34,18 @@ impl Instantiation<'_> {
         }
         Some(Ok(all))
     }
-}
 
-/// Whether a resolved statement is a loop over Strings, which are not numbers that a loop variable
-/// could hold.
-pub(super) fn runs_over_strings(statement: &Statement) -> bool {
-    let StatementKind::For { indices, .. } = &statement.kind else { return false };
-    let is_string = |e: &Expression| matches!(e.kind, ExpressionKind::String(_));
-    let of_strings = |range: &Expression| match &range.kind {
-        ExpressionKind::Array(elements) => elements.first().is_some_and(is_string),
-        _ => false,
-    };
-    indices.iter().any(|index| index.range.as_ref().is_some_and(of_strings))
+    /// Whether a resolved statement is a loop over Strings or records, which are not numbers that a loop
+    /// variable could hold.
+    pub(super) fn runs_over_values(&self, statement: &Statement, local: &Local) -> bool {
+        let StatementKind::For { indices, .. } = &statement.kind else { return false };
+        let is_string = |e: &Expression| matches!(e.kind, ExpressionKind::String(_));
+        let of_values = |range: &Expression| match &range.kind {
+            ExpressionKind::Array(elements) if elements.first().is_some_and(is_string) => true,
+            _ => self.elements_of_records(range, local).is_some(),
+        };
+        indices.iter().any(|index| index.range.as_ref().is_some_and(of_values))
+    }
 }
 
 /// Whether a statement may leave the loop around it.

@@ -22,7 +22,7 @@ mod vectorized;
 
 pub(crate) use super::string_part::StringPart;
 pub(crate) use message_text::{message_parts, message_text, nth};
-pub(crate) use records::field_of;
+pub(crate) use records::{field_of, stacked};
 pub(crate) use target::{
     ConditionalValues, FunctionCalls, Operations, StringOperations, Target, TimeOperators,
     VariableReferences,

@@ -11,7 +11,7 @@ use crate::syntax::ast::{ComponentReference, Subscript};
 
 impl<T: Target> Lowering<'_, T> {
     /// What subscripts choose of an array, or of an array of records.
-    pub(super) fn elements_of(
+    pub(crate) fn elements_of(
         &mut self,
         value: Lowered<T::Scalar>,
         subscripts: &[Subscript],
@@ -53,7 +53,7 @@ impl<T: Target> Lowering<'_, T> {
 }
 
 /// Values of one shape as the elements of an array with one more dimension.
-pub(super) fn stacked<S: Copy>(
+pub(crate) fn stacked<S: Copy>(
     values: Vec<Lowered<S>>,
     span: Span,
 ) -> Result<Lowered<S>, Diagnostic> {
