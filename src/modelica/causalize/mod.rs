@@ -22,6 +22,7 @@ mod alias_elimination;
 mod blt;
 mod causalized;
 mod constant_conditions;
+mod declared_ranges;
 mod discrete;
 mod dummy_derivatives;
 mod dump;

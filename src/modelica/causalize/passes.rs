@@ -175,6 +175,7 @@ impl<'a> Causalization<'a> {
         let parameters = std::mem::take(&mut self.parameters);
         self.parameters = lower::fold_parameters(&mut self.dae, parameters);
         self.dae.defaults = DefaultValues::of_parameters(&self.dae, &self.parameters);
+        super::declared_ranges::warn_of_values_outside(&mut self.dae);
         Ok(())
     }
 

@@ -71,4 +71,9 @@ crate::codes! {
         "## What it means\nAn Integer, Boolean or enumeration variable, or a variable of a when-clause, must have discrete-time expressions (MLS §3.8.4): they change at events only. Relations and `integer` in functions and in `noEvent` cause no events.\n\n\
          ## Example\n`Integer n = f(time);` with `function f input Real x; output Integer y; algorithm y := integer(x); end f;`\n\n\
          ## What to do\nWrite the relation, `integer` or `floor` in the model, outside of functions and `noEvent`.",
+    /// A value outside the interval of `min` and `max`.
+    OUTSIDE_RANGE = "outside-range":
+        "## What it means\nA value lies outside the interval that the attributes `min` and `max` of its variable declare (MLS §4.9): that of a constant or parameter, a fixed start value, or one that a simulation has led to. The simulation continues with it.\n\n\
+         ## Example\n`parameter Real p(min = 0) = -1;`\n\n\
+         ## What to do\nCorrect the value, or the attribute. A variable that leaves its interval shows that the model is used where it does not hold; write an `assert` where that is an error.",
 }

@@ -677,3 +677,31 @@ fn continuous_variables_have_no_value_before_outside_of_when_clauses() {
     let values = [run.last("d"), run.last("z"), run.last("w"), run.last("n")];
     crate::support::simulated::all_near(&values, &[3.5, 3.5, 2.5, 1.0], 1e-6);
 }
+
+/// What is known at translation is compared with `min` and `max` (MLS §4.9).
+#[test]
+fn values_outside_of_declared_ranges_are_warned_of() {
+    let warnings = |declarations: &str| {
+        let text = format!("model M {declarations} end M;");
+        let program = crate::support::simulated::program(&text);
+        let outside = program.warnings().iter().filter(|one| one.code.slug == "outside-range");
+        outside.map(|one| one.message.clone()).collect::<Vec<_>>()
+    };
+    for (declarations, expected) in [
+        ("parameter Real p(max = 1) = 2;", "`p` is 2, above its `max` of 1"),
+        ("parameter Integer n(min = 1) = -3;", "`n` is -3, below its `min` of 1"),
+        ("constant Real c(max = 5) = 6;", "`c` is 6, above its `max` of 5"),
+        ("parameter Real q[3](each min = 0) = {1, -1, -2};", "`q[2]` is -1, below its `min` of 0"),
+        ("parameter Real l = 3; parameter Real p(min = l) = 2;", "`p` is 2, below its `min` of 3"),
+        (
+            "Real x(start = -1, fixed = true, min = 0); equation der(x) = 1;",
+            "the start value of `x` is -1, below its `min` of 0",
+        ),
+    ] {
+        assert_eq!(warnings(declarations), [expected], "{declarations}");
+    }
+    let right = "parameter Real p(min = 0, max = 1) = 1; parameter Real q(min = 0) = p;
+        Real x(start = -1, min = 0); type E = enumeration(a, b); parameter E e(max = E.b) = E.b;
+        equation der(x) = 1;";
+    assert_eq!(warnings(right), [""; 0]);
+}
