@@ -33,6 +33,7 @@ mod jacobian;
 mod joint;
 mod journal;
 mod limits;
+mod linearity;
 mod linearization;
 mod minimum_test;
 mod misread;
