@@ -1,11 +1,13 @@
 //! Least squares of some parameters from a known point, the others held.
 
+use super::statistics::outliers::basis;
 use super::{Best, Evaluation, Free, Problem, Run, Simulate};
 use crate::diag::Fault;
 use crate::ga::optimizer::{Answers, METHODS, Required, Setup};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
 use crate::ranks::Processors;
 use crate::registry::{self, Options};
+use nalgebra::DVector;
 
 /// Evaluations of one fit.
 const BUDGET: u64 = 400;
@@ -70,6 +72,20 @@ impl<'a> Refit<'a> {
         let mut how = Options::default();
         how.set("offset", ROUGH);
         self.descend(start, Some(held), &mut how)
+    }
+
+    /// By how much a step of Gauss and Newton from `values`, which were simulated, lowers the sum of squares
+    /// as the linear model there has it, some parameters standing still; `None` without derivatives.
+    pub(super) fn fall(&mut self, values: &[f64], row: &[f64], held: &[usize]) -> Option<f64> {
+        let varied: Vec<usize> = (0..values.len()).filter(|k| !held.contains(k)).collect();
+        let jacobian = self.jacobians(&[values.to_vec()], &varied);
+        let residuals = DVector::from_vec(self.evaluation.residuals(self.problem, row));
+        let column = |k: usize| jacobian.iter().skip(k).step_by(varied.len()).copied().collect();
+        let columns: Vec<Vec<f64>> = (0..varied.len()).map(column).collect();
+        let points: Vec<usize> = (0..residuals.len()).collect();
+        let fall = basis(&columns, &points).tr_mul(&residuals).norm_squared();
+        let are_known = columns.iter().flatten().all(|value| value.is_finite());
+        Some(fall).filter(|_| are_known)
     }
 
     fn descend(

@@ -3,8 +3,8 @@
 //!
 //! A parameter is identifiable where these data end its 95 % interval on both sides, within the
 //! search range, and on a logarithmic scale within a factor of ten. The linear interval decides where
-//! it holds: it lies within the range, the sum of squares at its ends has risen by what the linear
-//! model says, and no other minimum fits as well.
+//! it holds: it lies within the range, the sum of squares at its ends, the others fitted again, has
+//! risen by what the linear model says, and no other minimum fits as well.
 //! Everywhere else its profile likelihood decides: at an end of the range, where a linear interval
 //! would leave the range, where there is no standard error, where the model is curved. What a
 //! budget of simulations does not allow is not said.
@@ -107,7 +107,7 @@ impl Solution {
             self.judge_by_rank(&mut judged);
             return Ok(judged);
         }
-        let open = self.doubtful(run, statistics, &judged);
+        let open = self.doubtful(run, statistics, &judged)?;
         self.judge_by_profiles(run, statistics, (&open, &mut judged))?;
         Ok(judged)
     }
@@ -178,12 +178,17 @@ impl Solution {
     }
 
     /// Parameters whose linear interval does not decide.
-    fn doubtful(&mut self, run: &Run, statistics: &Statistics, judged: &[Judged]) -> Vec<usize> {
+    fn doubtful(
+        &mut self,
+        run: &Run,
+        statistics: &Statistics,
+        judged: &[Judged],
+    ) -> Result<Vec<usize>, Fault> {
         let in_steps =
             judged.contains(&Judged::Effect) && self.parameters.iter().any(|own| own.in_steps);
         if in_steps {
             // Fits along a profile do not leave the step on which they begin.
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let is_open = |k: usize| judged[k] == Judged::Linear;
         let (sure, mut doubtful): (Vec<usize>, Vec<usize>) =
@@ -193,15 +198,23 @@ impl Solution {
                     && !run.conclusion.held.contains(&k)
                     && !self.is_elsewhere(k)
             });
-        doubtful.extend(self.curved(run, statistics, &sure));
+        doubtful.extend(self.curved(run, statistics, &sure)?);
         doubtful.sort_unstable();
-        doubtful
+        Ok(doubtful)
     }
 
     /// Whether another minimum that fits as well lies outside a linear interval.
     fn is_elsewhere(&self, k: usize) -> bool {
         let Some([low, high]) = self.grounds.linear[k] else { return true };
         self.outcome.other_minima.iter().any(|other| !(low..=high).contains(&other.values[k]))
+    }
+
+    /// Simulations that the profiles of a verdict may take, and the fits at the ends of linear intervals.
+    pub(super) fn budget(run: &Run) -> u64 {
+        match run.problem.noise <= super::NOISE_OF_FORMULAS {
+            true => BUDGET_OF_FORMULAS,
+            false => BUDGET.max(OF_SEARCH * run.simulations),
+        }
     }
 
     /// Takes the profiles of these parameters.
@@ -219,10 +232,7 @@ impl Solution {
         let square = statistics.searched;
         let rise = statistics.limit_of_squares() - square;
         let others = self.other_places(square + NEARBY * rise);
-        let budget = match run.problem.noise <= super::NOISE_OF_FORMULAS {
-            true => BUDGET_OF_FORMULAS,
-            false => BUDGET.max(OF_SEARCH * run.simulations),
-        };
+        let budget = Solution::budget(run);
         let known = Known {
             best: &values,
             reach: &reach,
