@@ -12,6 +12,8 @@ pub struct Grounds {
     pub(super) pulls: Vec<Option<(f64, [f64; 2])>>,
     /// Which parameters have a derivative that vanishes at the best values.
     pub(super) flat: Vec<bool>,
+    /// Groups of parameters whose changes cancel near the best values.
+    pub(super) groups: Vec<Vec<usize>>,
     /// Degrees of freedom of the residual variance.
     pub(super) freedom: f64,
     /// The root of the rise of the sum of squares within the 95 % limit, in units of that variance.

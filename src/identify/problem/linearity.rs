@@ -76,7 +76,7 @@ impl LinearityTest<'_> {
         let small = |fitted: f64| straight - self.share(fitted, end) <= SMALL;
         let sum = match sum.filter(|sum| small(*sum)) {
             Some(sum) => Some(sum),
-            None => self.refit.roughly(&end.values, k)?.map(|(_, sum)| sum),
+            None => self.refit.roughly(&end.values, &[k])?.map(|(_, sum)| sum),
         };
         Ok(sum.is_some_and(|sum| (least..=most).contains(&self.share(sum, end))))
     }

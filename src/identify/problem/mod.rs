@@ -97,7 +97,7 @@ use parts::other_shards;
 pub use parts::{Parts, Shard, ShardFile, missing_shards};
 pub(crate) use plane::{SpectrumFigures, planes};
 pub use portable::{Portable, PortableExperiment};
-pub use profile::{Profile, Profiles};
+pub use profile::{Profile, Profiles, RangeEnd};
 pub use refit::MakeSimulator;
 pub use relative::{Scale, Scaling, SolvedCoefficient};
 pub use run::Run;
@@ -365,6 +365,8 @@ mod findings_tests;
 mod irregular_tests;
 #[cfg(test)]
 mod joint_tests;
+#[cfg(test)]
+mod linearity_tests;
 #[cfg(test)]
 mod stopping_tests;
 #[cfg(test)]

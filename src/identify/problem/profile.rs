@@ -14,6 +14,7 @@ use super::{ErrorModel, Evaluation, Free, Problem};
 use crate::diag::Fault;
 use crate::fitness::raised;
 use crate::registry::BAD_OPTION;
+use crate::table::significant;
 use crate::{bail, elementary};
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,13 @@ const SAME: f64 = 1e-7;
 const SAME_OF_BRACKET: f64 = 1e-4;
 /// The sum of squares is this near to the limit at the crossing, relative to its rise.
 const NEAR: f64 = 1e-3;
+/// The range of another parameter ends an interval where the sum at the end of the interval would rise by
+/// more than this part of the rise to the limit if that range were narrower by this part: the interval
+/// would then be shorter by a fortieth of its half-width or more. Ranges of rates and exchange currents
+/// over decades are met by parameters that act no more there, and change nothing (six parameters of a
+/// polarization curve).
+const NARROWER: f64 = 0.1;
+const WORSE: f64 = 0.05;
 /// A fit that is better by more than this, relative, is another optimum.
 const BETTER: f64 = 1e-6;
 
@@ -63,10 +71,33 @@ pub struct Profile {
     /// Values of all parameters at the points within the limit.
     #[serde(skip)]
     pub valley: Vec<Vec<f64>>,
+    /// Where each end lies, which other parameters stand at ends of their ranges: these end the interval.
+    #[serde(default)]
+    pub(crate) held: [Vec<RangeEnd>; 2],
     /// The last values that could be simulated, where a constraint does not hold beyond or
     /// simulations fail: nothing is known from there on.
     #[serde(default)]
     pub cut: [Option<f64>; 2],
+}
+
+/// A parameter at an end of its range.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RangeEnd {
+    /// Its name.
+    pub parameter: String,
+    /// That end.
+    pub end: f64,
+}
+
+impl RangeEnd {
+    /// Where that is, as in "c is at the end -10 of its search range".
+    pub(super) fn words(all: &[RangeEnd]) -> String {
+        let at =
+            |own: &RangeEnd| format!("{} is at the end {}", own.parameter, significant(own.end, 4));
+        let all: Vec<String> = all.iter().map(at).collect();
+        let whose = if all.len() == 1 { "its search range" } else { "their search ranges" };
+        format!("{} of {whose}", all.join(" and "))
+    }
 }
 
 fn both() -> [bool; 2] {
@@ -127,19 +158,11 @@ pub fn profiles(
     let Some(refit) = Refit::new(problem, evaluation).filter(|_| known.freedom >= 1.0) else {
         return Ok(None);
     };
-    let mut walk = ProfileWalk {
-        refit,
-        limit: 0.0,
-        last: known.budget,
-        better: None,
-        starts: Vec::new(),
-        cut: None,
-        is_over: false,
-        valley: Vec::new(),
-    };
+    let mut walk = ProfileWalk::new(refit, known.budget);
     let Some((best, smallest)) = walk.refit.from(known.best, None)? else { return Ok(None) };
     let residuals = walk.refit.plain_residuals(&best);
     walk.limit = limit(problem, smallest, [known.freedom, known.quantile], residuals.as_deref());
+    walk.rise = walk.limit - smallest;
     walk.starts.push(best.clone());
     walk.starts.extend(known.others.iter().cloned());
     let begun = walk.refit.simulations;
@@ -231,6 +254,8 @@ pub fn limit(
 struct ProfileWalk<'a> {
     refit: Refit<'a>,
     limit: f64,
+    /// The rise of the sum of squares to the limit.
+    rise: f64,
     /// The last simulation of the budget.
     last: u64,
     better: Option<(Vec<f64>, f64)>,
@@ -263,11 +288,20 @@ struct Fit {
     sum: f64,
 }
 
+/// Where the sum of squares crosses the limit.
+struct Crossing {
+    /// As a fraction of the range.
+    place: f64,
+    /// Values of all parameters in the fit there, or in the last within the limit.
+    values: Vec<f64>,
+}
+
 /// Connected values within the limit, as fractions of the range; `None` where it continues to the
 /// end.
-#[derive(Clone, Copy)]
 struct Piece {
     ends: [Option<f64>; 2],
+    /// Other parameters that stand at ends of their ranges there.
+    held: [Vec<RangeEnd>; 2],
     cut: [Option<f64>; 2],
     complete: [bool; 2],
 }
@@ -279,7 +313,21 @@ impl Piece {
     }
 }
 
-impl ProfileWalk<'_> {
+impl<'a> ProfileWalk<'a> {
+    fn new(refit: Refit<'a>, budget: u64) -> ProfileWalk<'a> {
+        ProfileWalk {
+            refit,
+            limit: 0.0,
+            rise: 0.0,
+            last: budget,
+            better: None,
+            starts: Vec::new(),
+            cut: None,
+            is_over: false,
+            valley: Vec::new(),
+        }
+    }
+
     /// The profile of parameter `k` about the best values and their sum of squares.
     fn one(&mut self, k: usize, known: &Known<'_>, best: (&[f64], f64)) -> Result<One, Fault> {
         let free = self.refit.parameter(k).clone();
@@ -290,7 +338,7 @@ impl ProfileWalk<'_> {
         let first = known.reach.get(k).copied().flatten();
         let first = first.map_or(STEPS[1], |reach| (FIRST * reach).clamp(STEPS[0], STEPS[1]));
         let own = self.piece(&free, k, best, first, &mut points)?;
-        let others = self.pieces(&free, k, own, first, &mut points)?;
+        let others = self.pieces(&free, k, &own, first, &mut points)?;
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let values = |piece: &Piece| piece.ends.map(|end| end.map(|place| free.value(place)));
         Ok(One {
@@ -303,6 +351,7 @@ impl ProfileWalk<'_> {
                 complete: own.complete,
                 cut: own.cut,
                 valley: std::mem::take(&mut self.valley),
+                held: own.held,
             },
             simulations: self.refit.simulations - before,
             better: self.better.take(),
@@ -318,15 +367,47 @@ impl ProfileWalk<'_> {
         first: f64,
         points: &mut Vec<[f64; 2]>,
     ) -> Result<Piece, Fault> {
-        let mut piece = Piece { ends: [None; 2], cut: [None; 2], complete: [true; 2] };
+        let mut piece = Piece {
+            ends: [None; 2],
+            held: [Vec::new(), Vec::new()],
+            cut: [None; 2],
+            complete: [true; 2],
+        };
         for (side, step) in [-first, first].into_iter().enumerate() {
             let (place, values) = (free.fraction(from.0[k]), from.0.to_vec());
             let inside = Fit { place, values, sum: from.1 };
-            piece.ends[side] = self.until_crossing(free, k, inside, step, points)?;
+            if let Some(end) = self.until_crossing(free, k, inside, step, points)? {
+                piece.ends[side] = Some(end.place);
+                piece.held[side] = self.held(k, &end.values)?;
+            }
             piece.cut[side] = self.cut.take();
             piece.complete[side] = !self.is_over;
         }
         Ok(piece)
+    }
+
+    /// The parameters other than `k` whose ranges end the interval here: they stand at an end of it, and with
+    /// a narrower one the fit would be worse. Where others make up for a parameter, it can have any value,
+    /// that end as well.
+    fn held(&mut self, k: usize, values: &[f64]) -> Result<Vec<RangeEnd>, Fault> {
+        let mut held = Vec::new();
+        for (j, value) in values.iter().enumerate().filter(|(j, _)| *j != k) {
+            let free = self.refit.parameter(j);
+            let place = free.fraction(*value);
+            let (end, narrower) = match (place <= SAME, 1.0 - place <= SAME) {
+                (true, _) => (free.min, NARROWER),
+                (_, true) => (free.max, 1.0 - NARROWER),
+                _ => continue,
+            };
+            let mut start = values.to_vec();
+            start[j] = free.value(narrower);
+            let found = self.refit.roughly(&start, &[k, j])?;
+            let is_worse = |(_, sum): &(Vec<f64>, f64)| sum - self.limit > WORSE * self.rise;
+            if found.as_ref().is_none_or(is_worse) {
+                held.push(RangeEnd { parameter: free.name.clone(), end });
+            }
+        }
+        Ok(held)
     }
 
     /// The pieces about other minima that lie beside the own one.
@@ -334,7 +415,7 @@ impl ProfileWalk<'_> {
         &mut self,
         free: &Free,
         k: usize,
-        own: Piece,
+        own: &Piece,
         first: f64,
         points: &mut Vec<[f64; 2]>,
     ) -> Result<Vec<Piece>, Fault> {
@@ -362,7 +443,7 @@ impl ProfileWalk<'_> {
         mut inside: Fit,
         mut step: f64,
         points: &mut Vec<[f64; 2]>,
-    ) -> Result<Option<f64>, Fault> {
+    ) -> Result<Option<Crossing>, Fault> {
         let mut before: Option<Fit> = None;
         for number in 0..SIDE {
             let place = (inside.place + step).clamp(0.0, 1.0);
@@ -407,7 +488,7 @@ impl ProfileWalk<'_> {
         k: usize,
         [mut inside, mut outside]: [Fit; 2],
         points: &mut Vec<[f64; 2]>,
-    ) -> Result<f64, Fault> {
+    ) -> Result<Crossing, Fault> {
         let (mut same_end, mut was_outside) = (0, None);
         let smallest = points[0][1];
         let same = SAME.min(SAME_OF_BRACKET * (outside.place - inside.place).abs());
@@ -419,23 +500,25 @@ impl ProfileWalk<'_> {
             let at = |part: f64| inside.place + part.clamp(0.05, 0.95) * width;
             let jumps = outside.sum - inside.sum > JUMP * (self.limit - smallest);
             if attempt >= CROSSING && (!jumps || width.abs() <= same) {
-                return Ok(at(part));
+                return Ok(Crossing { place: at(part), values: inside.values });
             }
             // Where the same end is met again, the rise is not a parabola.
             let is_root = attempt < CROSSING && same_end < 2;
             let place = at(if is_root { part } else { 0.5 });
             let starts = [self.on_line([&inside, &outside], place), inside.values.clone()];
             let found = self.fit((free, k, place), &starts, points, Care::OneStart)?;
-            let Some(found) = found else { return Ok(place) };
+            let Some(found) = found else {
+                return Ok(Crossing { place, values: inside.values });
+            };
             if (found.sum - self.limit).abs() <= NEAR * (self.limit - smallest) {
-                return Ok(place);
+                return Ok(Crossing { place, values: found.values });
             }
             let is_outside = found.sum > self.limit;
             same_end = if was_outside == Some(is_outside) { same_end + 1 } else { 1 };
             was_outside = Some(is_outside);
             *(if is_outside { &mut outside } else { &mut inside }) = found;
         }
-        Ok(inside.place)
+        Ok(Crossing { place: inside.place, values: inside.values })
     }
 
     /// The smallest sum of squares with parameter `k` at `place`, from the first of `starts` that can be
@@ -459,7 +542,7 @@ impl ProfileWalk<'_> {
                 continue;
             }
             start[k] = free.value(place);
-            let found = self.refit.roughly(&start, k)?;
+            let found = self.refit.roughly(&start, &[k])?;
             least = match (least, found) {
                 (Some(least), Some(found)) if found.1 < least.1 => Some(found),
                 (least, found) => least.or(found),

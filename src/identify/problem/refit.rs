@@ -59,19 +59,19 @@ impl<'a> Refit<'a> {
     ///
     /// Those of the method's maker.
     pub fn from(&mut self, start: &[f64], held: Option<usize>) -> Result<Option<Fitted>, Fault> {
-        self.descend(start, held, &mut Options::default())
+        self.descend(start, held.as_slice(), &mut Options::default())
     }
 
-    /// The same where parameter `held` stands still and the sum alone counts: the values of the others
-    /// lie within a thousandth of their standard errors.
+    /// The same where parameters stand still and the sum alone counts: the values of the others lie within a
+    /// thousandth of their standard errors.
     ///
     /// # Errors
     ///
     /// Those of the method's maker.
-    pub fn roughly(&mut self, start: &[f64], held: usize) -> Result<Option<Fitted>, Fault> {
+    pub fn roughly(&mut self, start: &[f64], held: &[usize]) -> Result<Option<Fitted>, Fault> {
         let mut how = Options::default();
         how.set("offset", ROUGH);
-        self.descend(start, Some(held), &mut how)
+        self.descend(start, held, &mut how)
     }
 
     /// By how much a step of Gauss and Newton from `values`, which were simulated, lowers the sum of squares
@@ -91,14 +91,14 @@ impl<'a> Refit<'a> {
     fn descend(
         &mut self,
         start: &[f64],
-        held: Option<usize>,
+        held: &[usize],
         how: &mut Options,
     ) -> Result<Option<Fitted>, Fault> {
         let Some(first) = self.residuals(&[start.to_vec()]).pop().flatten() else {
             return Ok(None);
         };
         let mut best = (start.to_vec(), square(&first));
-        let varied: Vec<usize> = (0..start.len()).filter(|k| Some(*k) != held).collect();
+        let varied: Vec<usize> = (0..start.len()).filter(|k| !held.contains(k)).collect();
         if varied.is_empty() {
             return Ok(Some(best));
         }

@@ -3,7 +3,7 @@
 use super::grounds::Grounds;
 use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
-    Profile, Profiles, Severity, SolvedCoefficient, SolvedDescent, residual_test,
+    Profile, Profiles, RangeEnd, Severity, SolvedCoefficient, SolvedDescent, residual_test,
 };
 use crate::Descriptions;
 use crate::elementary;
@@ -252,6 +252,10 @@ pub struct SolvedParameter {
     /// At which ends of the interval, the lower and the upper, it is the range that ends, not the data.
     #[serde(default, serialize_with = "sides", deserialize_with = "from_sides")]
     pub open: [bool; 2],
+    /// Other parameters that stand at an end of their ranges where the interval ends, below and above:
+    /// their ranges end it there, not the data.
+    #[serde(default, skip_serializing_if = "is_ended_by_data")]
+    pub held: [Vec<RangeEnd>; 2],
     /// All parts of the 95 % set, where other minima have parts of their own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pieces: Vec<[f64; 2]>,
@@ -268,6 +272,10 @@ pub struct SolvedParameter {
     /// What the data say about it; `None` where unknown.
     #[serde(default)]
     pub verdict: Option<Verdict>,
+}
+
+fn is_ended_by_data(held: &[Vec<RangeEnd>; 2]) -> bool {
+    held.iter().all(Vec::is_empty)
 }
 
 /// What the data say about a parameter.

@@ -1,5 +1,6 @@
 //! Sentences about single parameters. They say what the verdict says, and where it comes from.
 
+use super::profile::RangeEnd;
 use super::range_notes::{is_upper, remedy};
 use super::verdicts::{ByProfile, Judged};
 use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter, Verdict};
@@ -82,21 +83,26 @@ fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
             remedy(parameter)
         ),
     };
-    let what = match parameter.open {
-        [true, true] => format!("it can have any value in its whole search range, {min} to {max}"),
-        [false, false] if parameter.is_precise() => format!(
-            "it can have any value between {low} and {high}, where the search ranges of others, not \
-             the data, end the interval"
+    // Where the interval ends and the data do not end it.
+    let beyond = |side: usize| match (parameter.open[side], &parameter.held[side][..]) {
+        (true, _) => Some(format!("the end {} of its search range", [&min, &max][side])),
+        (false, []) => None,
+        (false, held) => Some(format!("{}, where {}", [&low, &high][side], RangeEnd::words(held))),
+    };
+    let what = match [beyond(0), beyond(1)] {
+        [Some(_), Some(_)] if parameter.open == [true; 2] => {
+            format!("it can have any value in its whole search range, {min} to {max}")
+        }
+        [Some(below), Some(above)] => format!(
+            "they do not bound it from below, down to {below}, nor from above, up to {above}"
         ),
-        [false, false] => format!("it can have any value between {low} and {high}"),
-        [false, true] => format!(
-            "it is at least {low}; they do not bound it from above, up to the end {max} of its \
-             search range"
-        ),
-        [true, false] => format!(
-            "it is at most {high}; they do not bound it from below, down to the end {min} of its \
-             search range"
-        ),
+        [None, None] => format!("it can have any value between {low} and {high}"),
+        [None, Some(above)] => {
+            format!("it is at least {low}; they do not bound it from above, up to {above}")
+        }
+        [Some(below), None] => {
+            format!("it is at most {high}; they do not bound it from below, down to {below}")
+        }
     };
     let sentence =
         format!("{name} is practically non-identifiable from these data: {what}.{stands}");

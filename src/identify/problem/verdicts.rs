@@ -15,7 +15,7 @@
 use super::effects::{Effect, Finite};
 use super::grounds::Grounds;
 use super::non_identifiable::Form;
-use super::profile::{Known, Profile, profiles};
+use super::profile::{Known, Profile, RangeEnd, profiles};
 use super::{Free, Run, Solution, SolvedParameter, Statistics, Verdict};
 use crate::diag::Fault;
 use crate::elementary;
@@ -32,8 +32,6 @@ const NEARBY: f64 = 10.0;
 /// Where the logarithm of a parameter is searched, an interval wider than this factor says no more than
 /// its order of magnitude.
 const DECADE: f64 = 10.0;
-/// Values nearer to an end of a range than this, relative to it, are at that end.
-const ON_END: f64 = 1e-6;
 /// Simulations that the profiles of a verdict may take: so many times those of the search, and at least
 /// so many. A profile takes about 12 fits, each of 3 Jacobians or so. Formulas cost next to nothing.
 const OF_SEARCH: u64 = 2;
@@ -102,7 +100,10 @@ impl Solution {
         let Grounds { freedom, quantile, .. } = self.grounds;
         let pulls = (0..n).map(pull).collect();
         let flat = self.flat(statistics);
-        self.grounds = Grounds { pulls, linear, flat, freedom, quantile, ..Grounds::default() };
+        let groups = statistics.rank.non_identifiable.iter();
+        let groups = groups.map(|group| group.parameters.clone()).collect();
+        let known = Grounds::default();
+        self.grounds = Grounds { pulls, linear, flat, groups, freedom, quantile, ..known };
         if is_without_noise(run, statistics) {
             self.judge_by_rank(&mut judged);
             return Ok(judged);
@@ -261,7 +262,6 @@ impl Solution {
                 true => Judged::Stopped,
                 false => self.adopt(k, &profile, budget),
             };
-            self.beware_of_ranges(k, &profile, statistics);
             if judged[k] == Judged::Stopped {
                 self.parameters[k].forget();
             }
@@ -272,37 +272,27 @@ impl Solution {
         Ok(())
     }
 
-    /// Among parameters whose changes cancel near the best values, an interval may end only where
-    /// another of them meets the end of its range: the data do not say that.
-    fn beware_of_ranges(&mut self, k: usize, profile: &Profile, statistics: &Statistics) {
-        if self.parameters[k].verdict != Some(Verdict::Identifiable) {
-            return;
-        }
-        let mut groups = statistics.rank.non_identifiable.iter();
-        let Some(group) = groups.find(|group| group.parameters.contains(&k)) else { return };
-        let valley = profile.valley.iter();
-        let ends = [
-            valley.clone().min_by(|a, b| a[k].total_cmp(&b[k])),
-            valley.max_by(|a, b| a[k].total_cmp(&b[k])),
-        ];
-        let is_at_end = |values: &&Vec<f64>| {
-            let others = group.parameters.iter().filter(|other| **other != k);
-            others.clone().any(|&other| {
-                let own = &self.parameters[other];
-                own.range.iter().any(|end| (values[other] - end).abs() <= ON_END * end.abs())
-            })
-        };
-        if ends.iter().flatten().any(is_at_end) {
-            self.parameters[k].verdict = Some(Verdict::PracticallyNonIdentifiable);
-            self.parameters[k].determined = Some(false);
-        }
-    }
-
     /// Takes what the profile of a parameter shows, which was made with this budget.
     pub(super) fn adopt(&mut self, k: usize, profile: &Profile, budget: u64) -> Judged {
+        self.parameters[k].held = [0, 1].map(|side| self.ending_ranges(k, &profile.held[side]));
         let Grounds { linear, pulls, quantile, .. } = &self.grounds;
         let pull = pulls[k].map(|(pull, reach)| ([pull, *quantile], reach));
         self.parameters[k].adopt(profile, linear[k], pull, budget)
+    }
+
+    /// The ranges of others that end the interval of parameter `k` where they stand at these ends. Where
+    /// another stands at an end at the best values, too, what is said of that one says that the others
+    /// hold there; not in a group whose changes cancel, in which every interval is made by the ranges.
+    fn ending_ranges(&self, k: usize, held: &[RangeEnd]) -> Vec<RangeEnd> {
+        let ends = |own: &&RangeEnd| {
+            let Some(j) = self.parameters.iter().position(|other| other.name == own.parameter)
+            else {
+                return false;
+            };
+            let are_members = |group: &Vec<usize>| group.contains(&j) && group.contains(&k);
+            !self.parameters[j].at_bound || self.grounds.groups.iter().any(are_members)
+        };
+        held.iter().filter(ends).cloned().collect()
     }
 }
 
@@ -318,7 +308,8 @@ impl SolvedParameter {
         let [low, high] = ends;
         self.interval = Some([low.unwrap_or(self.range[0]), high.unwrap_or(self.range[1])]);
         self.open = [low.is_none(), high.is_none()];
-        let is_bounded = self.open == [false; 2] && self.is_precise();
+        let is_ended_by_data = self.open == [false; 2] && self.held.iter().all(Vec::is_empty);
+        let is_bounded = is_ended_by_data && self.is_precise();
         self.determined = Some(is_bounded);
         self.verdict = Some(match is_bounded {
             true => Verdict::Identifiable,
@@ -329,6 +320,7 @@ impl SolvedParameter {
     /// Says nothing of what the data tell.
     pub fn forget(&mut self) {
         (self.interval, self.open, self.pieces) = (None, [false; 2], Vec::new());
+        self.held = [Vec::new(), Vec::new()];
         (self.verdict, self.determined) = (None, None);
     }
 
@@ -345,6 +337,7 @@ impl SolvedParameter {
         if let [Some(cut), _] | [_, Some(cut)] = profile.cut {
             let holds = linear.is_some_and(|[low, high]| min < low && high < max);
             if holds {
+                self.held = [Vec::new(), Vec::new()];
                 return Judged::Linear;
             }
             self.forget();
