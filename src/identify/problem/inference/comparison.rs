@@ -2,14 +2,17 @@
 //! weights, and the likelihood ratio where one model is a special case of the other.
 //!
 //! ln L is that of normal errors; a common standard deviation that is not given is estimated and
-//! counts as a parameter. AICc = 2k − 2 ln L + 2k(k+1)/(n−k−1), BIC = k ln n − 2 ln L, and twice the
-//! difference of ln L of nested models is distributed as χ² with the difference of k.
+//! counts as a parameter. AICc = 2k − 2 ln L + 2k(k+1)/(n−k−1), BIC = k ln n − 2 ln L. Twice the
+//! difference of ln L of nested models is distributed as χ² with the difference of k where there are
+//! many points. Where all errors have one variance that is estimated, that is n ln(S₀/S), and for linear
+//! models (S₀/S − 1) (n − p)/Δp has the distribution F with any number of points.
 //!
-//! Reference: [Burnham & Anderson 2002](gapilib_base::bibliography#burnham-anderson-2002).
+//! References: [Burnham & Anderson 2002](gapilib_base::bibliography#burnham-anderson-2002);
+//! [Bates & Watts 1988](gapilib_base::bibliography#bates-watts-1988), §3.10 (F).
 
 use super::Likelihood;
 use crate::diag::Fault;
-use crate::problem::distributions::chi_square_tails;
+use crate::problem::distributions::{chi_square_tails, f_upper};
 use crate::problem::{EndingKind, Solution};
 use crate::registry::BAD_OPTION;
 use crate::table::significant;
@@ -66,9 +69,21 @@ pub struct Nested {
     pub(crate) statistic: f64,
     /// Additional estimated quantities.
     pub freedom: usize,
+    /// The distribution that the probability is from.
+    pub(crate) distribution: Distribution,
     /// Probability of such a difference if the special case is right; `None` where the larger
     /// model fits worse, so that its minimum was not reached, or one of both is not at a minimum.
     pub probability: Option<f64>,
+}
+
+/// How the ratio of two likelihoods is distributed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Distribution {
+    /// That of ratios of variances: the variance is estimated.
+    F,
+    /// χ², with many points.
+    ChiSquare,
 }
 
 /// Compares solutions by name.
@@ -203,11 +218,42 @@ fn ratio(models: &[Compared], smaller: usize, larger: usize) -> Nested {
     let (a, b) = (models[smaller].likelihood, models[larger].likelihood);
     let statistic = 2.0 * (b.log - a.log);
     let freedom = b.estimated - a.estimated;
-    let [_, larger_by_chance] = chi_square_tails(statistic.max(0.0), freedom as f64);
+    let distribution = match b.one_variance {
+        true => Distribution::F,
+        false => Distribution::ChiSquare,
+    };
+    let larger_by_chance = match distribution {
+        Distribution::F => {
+            let points = b.points as f64;
+            // The variance is one of the estimated quantities.
+            let left = points - (b.estimated as f64 - 1.0);
+            let relative = elementary::exp(statistic.max(0.0) / points) - 1.0;
+            f_upper(relative * left / freedom as f64, [freedom as f64, left])
+        }
+        Distribution::ChiSquare => chi_square_tails(statistic.max(0.0), freedom as f64)[1],
+    };
     let at_minima = [smaller, larger].iter().all(|k| models[*k].no_minimum.is_none());
     let holds = |p: &f64| !p.is_nan() && statistic > -NOT_REACHED && at_minima;
     let probability = Some(larger_by_chance).filter(holds);
-    Nested { smaller, larger, statistic, freedom, probability }
+    Nested { smaller, larger, statistic, freedom, distribution, probability }
+}
+
+impl Nested {
+    /// What to say where the test and the weights speak for different models, or one of them alone for
+    /// the larger.
+    fn disagreement(&self, models: &[Compared]) -> &'static str {
+        let [small, large] = [self.smaller, self.larger].map(|k| models[k].weight);
+        let Some(((small, large), p)) = small.zip(large).zip(self.probability) else { return "" };
+        let is_favoured = large >= DECIDED * (small + large);
+        match (p < SIGNIFICANT) == is_favoured {
+            true => "",
+            false => {
+                " The test and the weights differ: the test asks whether the difference can be chance, \
+                 AICc which model predicts new data better, and it counts parameters the more the \
+                 fewer the points are. Further points decide."
+            }
+        }
+    }
 }
 
 fn sentence(models: &[Compared], nested: &[Nested]) -> String {
@@ -222,24 +268,29 @@ fn sentence(models: &[Compared], nested: &[Nested]) -> String {
     let mut text = judgement(models);
     for pair in nested {
         let (small, large) = (&models[pair.smaller].name, &models[pair.larger].name);
-        let said = match pair.probability {
+        let test = match pair.distribution {
+            Distribution::F => "F test",
+            Distribution::ChiSquare => "likelihood ratio",
+        };
+        text += &match pair.probability {
             None => format!(
                 " {large} contains {small} and yet fits worse: its search has not reached the minimum."
             ),
             Some(p) if p < SIGNIFICANT => format!(
-                " {small} is a special case of {large}, and the likelihood ratio rejects it (p = {}).",
+                " {small} is a special case of {large}, and the {test} rejects it (p = {}).",
                 significant(p, 2)
             ),
             Some(p) => format!(
-                " {small} is a special case of {large}, and the likelihood ratio does not \
-                 support the larger model (p = {}).",
+                " {small} is a special case of {large}, and the {test} does not support the larger \
+                 model (p = {}).",
                 significant(p, 2)
             ),
         };
-        text += &said;
+        text += pair.disagreement(models);
     }
     if nested.is_empty() && models.len() > 1 {
-        text += " No model is a special case of another, so there is no likelihood-ratio test.";
+        text += " None of these problems is known to be a special case of another (the same model with \
+                 fewer parameters estimated), so there is no likelihood-ratio test.";
     }
     text
 }
@@ -302,5 +353,52 @@ impl Comparison {
     /// `comparison.json`.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model(name: &str, [log, estimated]: [f64; 2], one_variance: bool) -> Compared {
+        let estimated = estimated as usize;
+        let (points, known_sigma) = (12, !one_variance);
+        compared(name, Likelihood { log, points, estimated, known_sigma, one_variance })
+    }
+
+    /// Two more parameters: 1 + 2 F/m is the ratio of the sums of squares, and its probability that ratio
+    /// to the power of −m/2, with m points beyond the parameters. χ² has the power −n/2.
+    #[test]
+    fn few_points_are_tested_by_the_ratio_of_variances() {
+        for statistic in [0.0, 0.5, 3.0, 9.0] {
+            let models = |one_variance: bool| {
+                let small = model("small", [10.0, 3.0], one_variance);
+                [small, model("large", [10.0 + 0.5 * statistic, 5.0], one_variance)]
+            };
+            let left = 12.0 - 4.0;
+            let expected =
+                [(true, (-0.5 * statistic * left / 12.0).exp()), (false, (-0.5 * statistic).exp())];
+            for (one_variance, expected) in expected {
+                let found = ratio(&models(one_variance), 0, 1).probability.unwrap();
+                assert!((found - expected).abs() < 1e-9, "{statistic}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_test_and_weights_that_differ_are_named() {
+        let said = |gain: f64| {
+            let small = model("small", [10.0, 2.0], false);
+            let mut models = [small, model("large", [10.0 + gain, 3.0], false)];
+            weigh(&mut models);
+            sentence(&models, &[ratio(&models, 0, 1)])
+        };
+        // p = 0.03: significant, but with a weight of 0.64 only.
+        assert!(said(2.4).contains("The test and the weights differ"), "{}", said(2.4));
+        for agreed in [said(0.1), said(8.0)] {
+            assert!(!agreed.contains("differ:"), "{agreed}");
+        }
+        let models = [model("a", [1.0, 2.0], false), model("b", [2.0, 3.0], false)];
+        assert!(sentence(&models, &[]).contains("is known to be a special case"));
     }
 }

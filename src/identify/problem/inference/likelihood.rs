@@ -18,6 +18,10 @@ pub struct Likelihood {
     pub estimated: usize,
     /// Whether the standard deviations of the measurements are given.
     pub(crate) known_sigma: bool,
+    /// Whether all errors are normal with one variance that is estimated: then ratios of likelihoods
+    /// follow the F distribution for linear models, with few points as well.
+    #[serde(default)]
+    pub(crate) one_variance: bool,
 }
 
 /// The sum of the logarithms of log-normal data: what the density of a value is less than that of its
@@ -90,7 +94,19 @@ impl Likelihood {
         let relative = Explicit::without_columns(&run.evaluation, values);
         let estimated = values.len() + deviations + relative.map_or(0, |own| own.count());
         let known_sigma = matches!(error_model, ErrorModel::Known | ErrorModel::Computed);
-        let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
+        let is_one = match error_model {
+            ErrorModel::OneVariance => true,
+            ErrorModel::Estimated => {
+                names.len() == 1 && data().all(|own| own.deviation().is_some())
+            }
+            ErrorModel::Known | ErrorModel::Computed => false,
+        };
+        let is_plain = problem.is_normal()
+            && !is_joint(&problem.series)
+            && problem.series.iter().all(Series::is_data);
+        let one_variance = is_one && is_plain;
+        let points = measured.len();
+        let found = Likelihood { log, points, estimated, known_sigma, one_variance };
         log.is_finite().then_some(found)
     }
 }
