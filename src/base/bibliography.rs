@@ -279,6 +279,10 @@
 //!   goodness of fit criteria based on stochastic processes. Annals of Mathematical Statistics
 //!   23(2), 1952, 193–212.
 //!
+//! <a id="durbin-watson-1950"></a>
+//! - **durbin-watson-1950** — J. Durbin, G. S. Watson: Testing for serial correlation in least squares
+//!   regression. Biometrika 37(3/4), 1950, 409–428.
+//!
 //! <a id="cook-weisberg-1982"></a>
 //! - **cook-weisberg-1982** — R. D. Cook, S. Weisberg: Residuals and influence in regression.
 //!   Chapman and Hall, 1982.

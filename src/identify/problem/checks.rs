@@ -9,7 +9,7 @@ use super::statistics::distributions::{
     chi_square_tails, f_upper, signs_two_sided, student_two_sided,
 };
 use super::statistics::freedom::Directions;
-use super::statistics::outliers::{outliers, rest_of};
+use super::statistics::outliers::{basis, outliers, rest_of};
 use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
 use super::statistics::resolution::resolution;
 use super::{
@@ -20,6 +20,7 @@ use crate::diag::suggest;
 use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::table::significant;
+use nalgebra::DMatrix;
 
 /// More outliers than this are named by half as many.
 const MOST_NAMED: usize = 20;
@@ -91,6 +92,7 @@ pub(crate) fn residual_findings(
     let all = series(problem, statistics);
     let alpha = FAMILY / (TESTS * all.len() + pairs(problem).len() + 1) as f64;
     let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
+    let followed = followed(statistics, &suspects);
     // A contradiction between a prior and the data is reported of the prior.
     let is_no_data = |k: usize| !problem.series[k].is_data();
     let raw = |own: &Own<'_>| -> Vec<f64> {
@@ -122,7 +124,7 @@ pub(crate) fn residual_findings(
         let rounding: Vec<usize> = own.points.iter().zip(&raw).filter_map(is_rounding).collect();
         suspects.retain(|j| !rounding.contains(j));
         findings.extend(saturated(&problem.series[k], own, &mut suspects));
-        findings.extend(of_series(own, (simulated, &rest), alpha, &mut suspects));
+        findings.extend(of_series(own, (simulated, &rest, &followed), alpha, &mut suspects));
     }
     findings.extend(chi_square(problem, statistics, &suspects, alpha));
     findings.extend(unlike_series(problem, statistics, &all, alpha));
@@ -213,6 +215,22 @@ fn is_followed(statistics: &Statistics, own: &Own<'_>) -> bool {
     directions.is_some_and(|directions| directions.follow(&own.points))
 }
 
+/// An orthonormal basis of what parameters, scales and offsets follow of the points. Parameters at ends of
+/// their ranges follow nothing. Nothing where outliers have moved the fit: of the way back to where it would
+/// be without them only the linear part is known, and the rest of it would look like a pattern.
+fn followed(statistics: &Statistics, outliers: &[usize]) -> DMatrix<f64> {
+    let points = statistics.residuals.len();
+    let columns = statistics.explicit_columns().map(|own| own.0);
+    let columns = columns.unwrap_or_else(|| statistics.weighted(&statistics.jacobian));
+    let is_held = |k: usize| statistics.inward.get(k).is_some_and(Option::is_some);
+    let columns = columns.into_iter().enumerate().filter(|(k, _)| !is_held(*k));
+    let columns: Vec<Vec<f64>> = columns.map(|(_, column)| column).collect();
+    match outliers.is_empty() {
+        true => basis(&columns, &(0..points).collect::<Vec<usize>>()),
+        false => DMatrix::zeros(points, 0),
+    }
+}
+
 fn passed_through(own: &Own<'_>) -> Finding {
     let (count, them) = match own.points.len() {
         1 => ("The only point".to_owned(), "it"),
@@ -266,10 +284,11 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
 }
 
 /// Patterns, spread and distribution of one series; `suspects` keeps those outliers that are. `rest`:
-/// the residuals without the influence of the outliers, which would look like a pattern.
+/// the residuals without the influence of the outliers, which would look like a pattern. `followed`: what
+/// the parameters follow of the points.
 fn of_series(
     own: &Own<'_>,
-    (simulated, rest): (&[f64], &[f64]),
+    (simulated, rest, followed): (&[f64], &[f64], &DMatrix<f64>),
     alpha: f64,
     suspects: &mut Vec<usize>,
 ) -> Vec<Finding> {
@@ -282,7 +301,8 @@ fn of_series(
         findings.extend(outlier(own, suspects));
         return findings;
     }
-    let test = residual_test(&residuals);
+    let rows: Vec<usize> = kept.iter().map(|&j| own.points[j]).collect();
+    let test = residual_test(&residuals, &followed.select_rows(&rows));
     let serial = test
         .filter(|test| test.runs_probability < alpha || test.autocorrelation_probability < alpha);
     let alike = serial.is_some_and(|test| test.autocorrelation > 0.0);
@@ -402,7 +422,8 @@ fn correlated(own: &Own<'_>, (test, left_out): (&ResidualTest, usize), alpha: f6
         format!(
             "The residuals of {}{without} have a pattern: {numbers}. Either the model does not describe \
              part of these data (lack of fit), or their noise is autocorrelated; standard errors \
-             are too small, by a factor of about {factor} for slowly varying sensitivities.",
+             are too small and intervals too narrow, by a factor of about {factor} for slowly varying \
+             sensitivities.",
             own.label
         )
     } else {

@@ -9,6 +9,7 @@ use crate::Descriptions;
 use crate::elementary;
 use crate::ga::Generation;
 use crate::search_record::SearchRecord;
+use nalgebra::DMatrix;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Correlations above this are worth a word.
@@ -451,7 +452,7 @@ impl SolvedSeries {
         let residuals: Vec<f64> = ordered.iter().map(|p| p[1] - p[2]).collect();
         self.rmse = (square / n).sqrt();
         self.r_squared = (total > 0.0).then(|| 1.0 - square / total);
-        self.residual_test = residual_test(&residuals)
+        self.residual_test = residual_test(&residuals, &DMatrix::zeros(residuals.len(), 0))
             .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]);
     }
 

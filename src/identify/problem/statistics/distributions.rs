@@ -90,6 +90,18 @@ pub(crate) fn f_upper(ratio: f64, [above, below]: [f64; 2]) -> f64 {
     beta_tails(0.5 * below, 0.5 * above, [1.0 / (1.0 + weight), 1.0 / (1.0 + 1.0 / weight)])[0]
 }
 
+/// Probability of values at least as far from the mean between -1 and 1, from the beta distribution with
+/// this mean and variance.
+pub(crate) fn beta_two_sided(value: f64, mean: f64, variance: f64) -> f64 {
+    let [place, mean] = [value, mean].map(|own| 0.5 * (1.0 + own));
+    let both = mean * (1.0 - mean) / (0.25 * variance) - 1.0;
+    if both.is_nan() || both <= 0.0 {
+        return f64::NAN;
+    }
+    let [lower, upper] = beta_tails(mean * both, (1.0 - mean) * both, [place, 1.0 - place]);
+    2.0 * lower.min(upper)
+}
+
 /// Probability of a split of `n` signs at least as uneven as `positive` to the rest.
 pub(crate) fn signs_two_sided(positive: u64, n: u64) -> f64 {
     let least = positive.min(n - positive) as f64;

@@ -1,12 +1,24 @@
 //! Tests of residuals that need no distribution of their own: serial correlation, mean, spread,
 //! normality.
 //!
+//! The residuals of a fit are not independent: what the parameters follow is missing from them. With
+//! the orthonormal basis Q of that, their covariance is that of noise times S = 1 − Q Qᵀ, from which mean
+//! and variance of the correlation of neighbours follow as Durbin and Watson (1950) have them; it is
+//! compared with the beta distribution that has both.
+//!
 //! References: [Wald & Wolfowitz 1940](gapilib_base::bibliography#wald-wolfowitz-1940) (runs);
+//! [Durbin & Watson 1950](gapilib_base::bibliography#durbin-watson-1950) (correlation);
 //! [Anderson & Darling 1952](gapilib_base::bibliography#anderson-darling-1952), p-values of D'Agostino and
 //! Stephens 1986, table 4.9, for mean and variance estimated (normality).
 
-use super::distributions::{normal_below, normal_two_sided, runs_two_sided, student_two_sided};
+use super::distributions::{
+    beta_two_sided, normal_below, normal_two_sided, runs_two_sided, student_two_sided,
+};
 use crate::elementary;
+use nalgebra::{DMatrix, DVector};
+
+/// With more degrees of freedom, the beta distribution is the normal one to 1e-3 of probabilities of 1e-3.
+const MANY: f64 = 5000.0;
 
 /// Whether residuals in the order of X look like noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +35,9 @@ pub(crate) struct ResidualTest {
     pub(crate) autocorrelation_probability: f64,
 }
 
-/// The tests of residuals in their order; `None` for fewer than three.
-pub(crate) fn residual_test(residuals: &[f64]) -> Option<ResidualTest> {
+/// The tests of residuals in their order; `None` for fewer than three. `followed`: rows of an orthonormal
+/// basis of what the parameters follow.
+pub(crate) fn residual_test(residuals: &[f64], followed: &DMatrix<f64>) -> Option<ResidualTest> {
     let n = residuals.len();
     if n < 3 {
         return None;
@@ -39,15 +52,48 @@ pub(crate) fn residual_test(residuals: &[f64]) -> Option<ResidualTest> {
     let neighbours: f64 =
         residuals.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
     let autocorrelation = if square > 0.0 { neighbours / square } else { 0.0 };
-    // Without correlation its mean is -1/n and its variance about 1/n (Moran 1948).
-    let z = (autocorrelation + 1.0 / count) * count.sqrt();
     Some(ResidualTest {
         runs,
         expected_runs: 1.0 + 2.0 * above as f64 * below as f64 / count,
         runs_probability: runs_two_sided(runs, above as u64, below as u64),
         autocorrelation,
-        autocorrelation_probability: normal_two_sided(z),
+        autocorrelation_probability: by_chance(autocorrelation, followed),
     })
+}
+
+/// Probability of a correlation of neighbours at least as far from its mean, in the residuals of white noise.
+/// NaN where the parameters follow all but two degrees of freedom.
+fn by_chance(autocorrelation: f64, followed: &DMatrix<f64>) -> f64 {
+    let n = followed.nrows();
+    let count = n as f64;
+    // The mean is taken from the residuals as well.
+    let mut columns = vec![DVector::from_element(n, 1.0 / count.sqrt())];
+    columns.extend(followed.column_iter().map(|own| own.add_scalar(-own.mean())));
+    let basis = DMatrix::from_columns(&columns);
+    // Half the sum of both neighbours, whose product with the residuals is their correlation.
+    let neighbours = DMatrix::from_fn(n, basis.ncols(), |j, c| {
+        let at = |j: Option<usize>| j.and_then(|j| basis.get((j, c))).copied().unwrap_or(0.0);
+        0.5 * (at(j.checked_sub(1)) + at(Some(j + 1)))
+    });
+    let (own, product) = (basis.tr_mul(&basis), basis.tr_mul(&neighbours));
+    let squared = |own: &DMatrix<f64>| own.component_mul(&own.transpose()).sum();
+    // Traces of S, S², B S and (B S)², where r = eᵀ B e / eᵀ e.
+    let trace = count - own.trace();
+    let of_square = count - 2.0 * own.trace() + squared(&own);
+    let first = -product.trace();
+    let second = 0.5 * (count - 1.0) - 2.0 * neighbours.norm_squared() + squared(&product);
+    // As of a projection to so many dimensions: S is one where the series is all of the data.
+    let freedom = trace * trace / of_square;
+    if freedom.is_nan() || freedom <= 2.0 {
+        return f64::NAN;
+    }
+    let mean = first / trace;
+    let of_second = second * freedom / of_square - mean * mean * freedom;
+    let variance = 2.0 * of_second / (freedom * (freedom + 2.0));
+    match freedom > MANY {
+        true => normal_two_sided((autocorrelation - mean) / variance.sqrt()),
+        false => beta_two_sided(autocorrelation, mean, variance),
+    }
 }
 
 pub(in super::super) fn mean(values: &[f64]) -> f64 {
@@ -129,17 +175,63 @@ pub(in super::super) fn normality(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::statistics::outliers::basis;
+
+    fn alone(residuals: &[f64]) -> Option<ResidualTest> {
+        residual_test(residuals, &DMatrix::zeros(residuals.len(), 0))
+    }
+
+    /// A basis of polynomials of this degree, as smooth models follow them.
+    fn polynomials(n: usize, degree: i32) -> DMatrix<f64> {
+        let column = |power: i32| -> Vec<f64> {
+            (0..n).map(|j| elementary::powi(j as f64 / n as f64 - 0.5, power)).collect()
+        };
+        let columns: Vec<Vec<f64>> = (0..=degree).map(column).collect();
+        basis(&columns, &(0..n).collect::<Vec<usize>>())
+    }
+
+    /// Residuals of white noise have correlated neighbours as often as the level says, and those of
+    /// correlated noise much more often: fits with one to five parameters to 10 to 60 points.
+    #[test]
+    fn white_noise_has_correlated_neighbours_as_often_as_the_level_says() {
+        const DRAWS: usize = 4000;
+        let mut rng = crate::ga::Mrg32k3a::new(&[2006.0; 6]).unwrap();
+        for (n, degree) in [(10, 0), (10, 2), (20, 4), (40, 1), (60, 3)] {
+            let followed = polynomials(n, degree);
+            let mut share = |memory: f64, level: f64| {
+                let is_below = |_: &usize| {
+                    let mut last = 0.0;
+                    let mut next = || {
+                        last = memory * last + rng.normal();
+                        last
+                    };
+                    let noise = DVector::from_fn(n, |_, _| next());
+                    let left = &noise - &followed * followed.tr_mul(&noise);
+                    let test = residual_test(left.as_slice(), &followed).unwrap();
+                    test.autocorrelation_probability < level
+                };
+                (0..DRAWS).filter(is_below).count() as f64 / DRAWS as f64
+            };
+            for level in [0.05_f64, 0.01] {
+                let error = (level * (1.0 - level) / DRAWS as f64).sqrt();
+                let found = share(0.0, level);
+                assert!((found - level).abs() < 4.0 * error, "{n} {degree} {level}: {found}");
+            }
+            let found = share(0.7, 0.01);
+            assert!(found > 0.05 || n < 20, "{n} {degree}: {found}");
+        }
+    }
 
     #[test]
     fn waves_are_not_noise_and_noise_is() {
         let wave: Vec<f64> = (0..60).map(|k| (f64::from(k) / 10.0).sin()).collect();
-        let test = residual_test(&wave).unwrap();
+        let test = alone(&wave).unwrap();
         assert_eq!(test.runs, 2);
         assert!(test.runs_probability < 1e-6 && test.autocorrelation > 0.9);
         assert!(test.autocorrelation_probability < 1e-6);
         let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
         let noise: Vec<f64> = (0..60).map(|_| rng.normal()).collect();
-        let test = residual_test(&noise).unwrap();
+        let test = alone(&noise).unwrap();
         assert!(test.runs_probability > 0.01 && test.autocorrelation_probability > 0.01);
         assert!((noise_beneath(&noise) / deviation(&noise) - 1.0).abs() < 0.2);
     }
