@@ -13,6 +13,7 @@ mod confirmed;
 mod curvature;
 mod curve;
 mod effects;
+mod elsewhere;
 mod ending;
 mod error_model;
 mod evaluation;
