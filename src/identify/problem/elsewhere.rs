@@ -1,15 +1,26 @@
 //! What other simulators of the same points reach by least squares: those of a model without its noise, or
 //! of inputs that continue otherwise between samples.
 
+use super::checks::residual_findings;
+use super::misread::is_pattern;
 use super::refit::{Fitted, Refit};
-use super::{Best, Evaluation, MakeSimulator, Run};
+use super::{Best, Evaluation, MakeSimulator, Run, Statistics};
 use crate::diag::Fault;
 use crate::ranks::Processors;
 
+/// What other simulators of the same points reach.
+pub struct Elsewhere {
+    /// The best point; `None` where they cannot simulate that of the run, or no descent has an end.
+    pub best: Option<Best>,
+    /// Whether its residuals have a pattern, where one descent was made from the best point of the run.
+    pub has_pattern: bool,
+    /// Simulations that it took.
+    pub simulations: u64,
+}
+
 impl Run {
-    /// What other simulators of the same points reach by least squares from the best point, and the
-    /// simulations that it took; `None` where they cannot simulate that point. With `others`, descents from
-    /// these too are followed to their ends, and `None` also says that none has one.
+    /// What other simulators of the same points reach by least squares from the best point. With `others`,
+    /// descents from these too are followed to their ends.
     ///
     /// # Errors
     ///
@@ -19,7 +30,7 @@ impl Run {
         simulator: MakeSimulator,
         others: Option<&[Vec<f64>]>,
         processors: &Processors,
-    ) -> Result<(Option<Best>, u64), Fault> {
+    ) -> Result<Elsewhere, Fault> {
         let own = std::mem::replace(&mut self.problem.simulator, simulator);
         let found = self.best_elsewhere(others, processors);
         self.problem.simulator = own;
@@ -30,8 +41,9 @@ impl Run {
         &self,
         others: Option<&[Vec<f64>]>,
         processors: &Processors,
-    ) -> Result<(Option<Best>, u64), Fault> {
-        let Some(best) = &self.observed.best else { return Ok((None, 0)) };
+    ) -> Result<Elsewhere, Fault> {
+        let nothing = Elsewhere { best: None, has_pattern: false, simulations: 0 };
+        let Some(best) = &self.observed.best else { return Ok(nothing) };
         let mut evaluation = Evaluation::on(&self.problem, processors)?;
         evaluation.reweigh(&self.problem, self.evaluation.weights().to_vec());
         evaluation.cancel_by(self.evaluation.cancel());
@@ -51,11 +63,18 @@ impl Run {
             }
             None => (Some(best.values.clone()), 1),
         };
-        let found = values.and_then(|values| {
-            let row = evaluation.simulate(&values).ok()?;
-            let fitness = evaluation.objective(&self.problem, &row);
-            Some(Best { values, fitness })
-        });
-        Ok((found, simulations))
+        let mut found = Elsewhere { simulations, ..nothing };
+        let row = values.and_then(|values| Some((evaluation.simulate(&values).ok()?, values)));
+        let Some((row, values)) = row else { return Ok(found) };
+        if others.is_none() {
+            let statistics = Statistics::at(&self.problem, &evaluation, &values, &row, &[]);
+            let resolved = self.conclusion.resolved;
+            let findings = residual_findings(&self.problem, &statistics, &row, resolved);
+            found.has_pattern = findings.iter().any(is_pattern);
+            found.simulations += statistics.simulations;
+        }
+        let fitness = evaluation.objective(&self.problem, &row);
+        found.best = Some(Best { values, fitness });
+        Ok(found)
     }
 }

@@ -148,7 +148,7 @@ fn best_of(readings: &[Reading]) -> f64 {
     readings.iter().filter_map(|own| own.r_squared).fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn is_pattern(finding: &Finding) -> bool {
+pub(super) fn is_pattern(finding: &Finding) -> bool {
     let is_kind = matches!(finding.kind, FindingKind::Autocorrelation | FindingKind::PoorFit);
     // Two outputs with errors in common have no pattern each.
     is_kind && finding.series.len() == 1

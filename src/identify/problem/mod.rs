@@ -70,6 +70,7 @@ pub use crate::search_record::Best;
 pub use conclude::conclude;
 pub(crate) use conclusion::Conclusion;
 pub use curve::draw_curves;
+pub use elsewhere::Elsewhere;
 pub use ending::OtherMinimum;
 pub use ending::{Ending, EndingKind, SolvedDescent};
 pub use error_model::ErrorModel;

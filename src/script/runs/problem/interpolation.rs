@@ -8,7 +8,7 @@ use crate::Session;
 use crate::diag::Fault;
 use crate::elementary;
 use crate::identify::problem::{
-    Best, EndingKind, ErrorModel, Finding, FindingKind, Run, Severity, Solution,
+    Best, Elsewhere, EndingKind, ErrorModel, Finding, FindingKind, Run, Severity, Solution,
 };
 use crate::identify::significant;
 
@@ -54,8 +54,8 @@ pub(super) fn try_others(
         let change = |file: &mut ProblemFile| set(file, &names, assumed.other());
         let other = again(session, Change::Entries(&change))?;
         let processors = session.world.processors();
-        let (found, simulations) = run.best_with(other.problem.simulator, None, &processors)?;
-        solution.effort.simulations_for_statistics += simulations;
+        let found = run.best_with(other.problem.simulator, None, &processors)?;
+        solution.effort.simulations_for_statistics += found.simulations;
         if session.world.is_interrupted() {
             let sentence = "Other interpolations of the inputs were not tried: the run was stopped \
                             before.";
@@ -76,13 +76,14 @@ struct Compared {
     points: usize,
     /// Parameters that move out of their intervals, by so many standard errors, the farthest first.
     moved: Vec<(String, f64)>,
-    /// Whether the residuals have a pattern: then neither fit is known to be right.
-    has_pattern: bool,
+    /// Whether the residuals of each have a pattern: if those of the better one do, neither fit is known to
+    /// be right.
+    patterns: [bool; 2],
 }
 
 impl Compared {
-    fn of(solution: &Solution, other: Option<Best>) -> Option<Compared> {
-        let Best { values, fitness } = other?;
+    fn of(solution: &Solution, other: Elsewhere) -> Option<Compared> {
+        let Best { values, fitness } = other.best?;
         let moved = solution.parameters.iter().zip(&values).filter_map(|(own, value)| {
             let [low, high] = own.interval?;
             let distance = (value - own.value).abs() / own.deviation?;
@@ -95,8 +96,8 @@ impl Compared {
         let points = solution.series.iter().map(|series| series.points.len()).sum();
         let is_likelihood =
             matches!(solution.likelihood.error_model, ErrorModel::Computed | ErrorModel::Estimated);
-        let has_pattern = solution.has_pattern();
-        Some(Compared { objectives, is_likelihood, points, moved, has_pattern })
+        let patterns = [solution.has_pattern(), other.has_pattern];
+        Some(Compared { objectives, is_likelihood, points, moved, patterns })
     }
 
     /// Whether these data do not show which of the two is right.
@@ -109,10 +110,19 @@ impl Compared {
         own == other || ratio.abs() <= SUPPORT
     }
 
+    /// Whether the other fit is better.
+    fn is_other_better(&self) -> bool {
+        self.objectives[1] < self.objectives[0]
+    }
+
+    /// Whether the residuals of the better fit have a pattern.
+    fn has_pattern(&self) -> bool {
+        self.patterns[usize::from(self.is_other_better())]
+    }
+
     /// Whether these data speak clearly for the fit that was made.
     fn is_decided(&self) -> bool {
-        let [own, other] = self.objectives;
-        !self.has_pattern && !self.is_equal() && own < other
+        !self.has_pattern() && !self.is_equal() && !self.is_other_better()
     }
 
     /// How far the estimates move, and that their intervals do not contain it.
@@ -149,18 +159,18 @@ fn finding(names: &[&str], assumed: Between, compared: Option<Compared>) -> Find
     };
     let [own, other] = compared.objectives;
     let is_equal = compared.is_equal();
-    let better = if other < own { assumed.other() } else { assumed };
-    let verdict = match (is_equal, compared.has_pattern) {
+    let better = if compared.is_other_better() { assumed.other() } else { assumed };
+    let verdict = match (is_equal, compared.has_pattern()) {
         (true, _) => "these data do not show which is right".to_owned(),
         (false, true) => format!(
-            "\"{}\" fits better{}, but the residuals have a pattern, so neither is shown to be right; \
+            "\"{}\" fits better{}, but its residuals have a pattern, so neither is shown to be right; \
              write what is known of the inputs, or sample them more often",
             better.name(),
             by(&compared)
         ),
         (false, false) => format!("\"{}\" fits better{}", better.name(), by(&compared)),
     };
-    let is_advised = !is_equal && !compared.has_pattern && better != assumed;
+    let is_advised = !is_equal && !compared.has_pattern() && better != assumed;
     let write = match is_advised {
         true => format!(
             "; write `interpolation = \"{}\"` in the entry of each in `inputs`",
@@ -209,7 +219,7 @@ mod tests {
             is_likelihood: false,
             points: 1000,
             moved: Vec::new(),
-            has_pattern: false,
+            patterns: [false; 2],
         };
         let said = |other| finding(&["I"], Between::Constant, Some(compared(other))).sentence;
         assert!(said(0.00245).contains("\"linear\" fits better by 2 %;"), "{}", said(0.00245));
@@ -229,7 +239,7 @@ mod tests {
             is_likelihood: true,
             points: 1000,
             moved: Vec::new(),
-            has_pattern: false,
+            patterns: [false; 2],
         };
         let said =
             |own, other| finding(&["I"], Between::Constant, Some(compared(own, other))).sentence;
@@ -243,24 +253,32 @@ mod tests {
 
     #[test]
     fn equal_objectives_with_other_estimates_are_a_warning() {
-        let compared = |has_pattern, other| Compared {
+        let compared = |patterns, other| Compared {
             objectives: [0.0025, other],
             is_likelihood: false,
             points: 1000,
             moved: vec![("R".to_owned(), 9.0), ("C".to_owned(), 4.25)],
-            has_pattern,
+            patterns,
         };
-        let found = finding(&["I"], Between::Constant, Some(compared(false, 0.0025001)));
+        let found = finding(&["I"], Between::Constant, Some(compared([false; 2], 0.0025001)));
         assert!(
             found.sentence.contains("R by 9, C by 4.2 (standard errors)"),
             "{}",
             found.sentence
         );
         assert_eq!(found.severity, Severity::Warning);
-        let decided = finding(&["I"], Between::Constant, Some(compared(false, 0.025)));
+        let decided = finding(&["I"], Between::Constant, Some(compared([false; 2], 0.025)));
         assert!(!decided.sentence.contains("standard errors"), "{}", decided.sentence);
-        let torn = finding(&["I"], Between::Constant, Some(compared(true, 0.001))).sentence;
-        assert!(torn.contains("neither is shown to be right"), "{torn}");
-        assert!(!torn.contains("write `interpolation"), "{torn}");
+        // The residuals of the better fit decide, not those of the one that was made.
+        let said =
+            |patterns| finding(&["I"], Between::Constant, Some(compared(patterns, 0.001))).sentence;
+        for patterns in [[true; 2], [false, true]] {
+            let torn = said(patterns);
+            assert!(torn.contains("neither is shown to be right"), "{torn}");
+            assert!(!torn.contains("write `interpolation"), "{torn}");
+        }
+        let clear = said([true, false]);
+        assert!(clear.contains("write `interpolation = \"linear\"`"), "{clear}");
+        assert!(!clear.contains("pattern"), "{clear}");
     }
 }

@@ -78,10 +78,9 @@ pub(super) fn compare(
         let other = again(session, Change::Entries(&change))?;
         let processors = session.world.processors();
         let starts = wider(solution);
-        let (found, simulations) =
-            run.best_with(other.problem.simulator, Some(&starts), &processors)?;
-        solution.effort.simulations_for_statistics += simulations;
-        without = found.map(|best| best.fitness);
+        let found = run.best_with(other.problem.simulator, Some(&starts), &processors)?;
+        solution.effort.simulations_for_statistics += found.simulations;
+        without = found.best.map(|best| best.fitness);
         if without.is_none() {
             let sentence = "Whether the data need the process noise is not known: the fit without it \
                             does not come to an end.";
