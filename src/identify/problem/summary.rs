@@ -198,7 +198,7 @@ fn best<'a>(run: &'a Run, stop: &str) -> Result<&'a Best, Fault> {
     Err(fault!(
         BAD_OPTION,
         "none of {} individuals could be simulated{why}", run.evaluations();
-        help: "correct the model or the search ranges"
+        help: "correct the model, the search ranges or the data"
     ))
 }
 

@@ -56,7 +56,7 @@ fn by_profile(parameter: &SolvedParameter, found: &ByProfile, alone: bool) -> Ve
         let part = |ends_of: &[f64; 2]| ends(*ends_of, parameter.value);
         let parts: Vec<String> = parameter.pieces.iter().map(part).collect();
         let sentence = format!(
-            "The values of {} within the 95 % limit are {} separate parts: {}.",
+            "The values of {} within the 95 % limit are at least {} separate parts: {}.",
             parameter.name,
             parts.len(),
             parts.join("; ")

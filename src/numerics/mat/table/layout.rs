@@ -141,7 +141,8 @@ pub(crate) fn layout<'a>(
     }
     let mut rows = records.split_off(data);
     let units = units_row(&mut rows, &head, places, &mut warnings);
-    let rows = checked(rows, &head, units.as_ref(), places, &mut warnings)?;
+    let separator = source.map(|(_, separator)| separator);
+    let rows = checked(rows, &head, (units.as_ref(), separator), places, &mut warnings)?;
     if rows.is_empty() {
         let place = places.row(head.line);
         bail!(
@@ -297,7 +298,7 @@ fn is_units_row(row: &Record<'_>, head: &Record<'_>, below: Option<&Record<'_>>)
 fn checked<'a>(
     rows: Vec<Record<'a>>,
     head: &Record<'a>,
-    units: Option<&Record<'a>>,
+    (units, separator): (Option<&Record<'a>>, Option<Separator>),
     places: Places,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Record<'a>>, Fault> {
@@ -316,8 +317,13 @@ fn checked<'a>(
         let found = if width > expected { width } else { row.cells.len().min(expected) };
         if found != expected {
             let place = places.of(row.line, found.min(expected));
+            // A blank before a unit separates cells where nothing else separates them alike in all rows.
+            let how = match separator {
+                Some(Separator::Blanks) => ", separated by blanks,",
+                _ => "",
+            };
             bail!(
-                BAD_TABLE, "{place}: {found} cells where the header has {expected}";
+                BAD_TABLE, "{place}: {found} cells{how} where the header has {expected}";
                 help: "give every row one cell per column; put text that contains a separator in \
                        double quotes, and remarks after a `#`"
             );

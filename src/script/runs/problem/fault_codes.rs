@@ -5,10 +5,13 @@
 use crate::mat::Column;
 
 /// What loggers write where a sensor fails.
-const CODES: [f64; 14] = [
+const CODES: [f64; 13] = [
     -99.0, -999.0, -9999.0, -99_999.0, 999.0, 9999.0, 99_999.0, 999_999.0, -999.9, -999.99,
-    32_767.0, -32_768.0, 65_535.0, 1e30,
+    32_767.0, -32_768.0, 65_535.0,
 ];
+/// Values of this size are no measurements: instruments write 9.9E37 for an overflow and 9.91E37 for what is
+/// not a number (SCPI 1999), programs the largest number of their type.
+const OVERFLOW: f64 = 1e30;
 /// A code lies this many spans of the other values beyond them.
 const BEYOND: f64 = 3.0;
 /// Spikes lie in at most one row of this many, and in so few consecutive ones: the pulses of an input are
@@ -40,8 +43,12 @@ pub(in crate::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
     let Some([low, high]) = ends(&others) else { return Vec::new() };
     let sentence = |code: &f64| {
         let coded: Vec<_> = column.known().filter(|(_, v)| v == code).collect();
+        let shown = match code.abs() >= OVERFLOW {
+            true => format!("{code:E}"),
+            false => code.to_string(),
+        };
         format!(
-            "{code} in {} of `{name}` is far from the other values, {low} to {high}: if it is \
+            "{shown} in {} of `{name}` is far from the other values, {low} to {high}: if it is \
              the fault code of an instrument or a spike, leave the cells empty; it is used as a \
              value",
             places(column, &coded)
@@ -53,12 +60,14 @@ pub(in crate::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
 /// The codes and spikes among the values of a column: those that are far from all values that are none.
 pub(in crate::runs) fn of(column: &Column) -> Vec<f64> {
     // One code must not hide another: 9999 for a short circuit beside -9999 for an open one.
-    let (suspects, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| CODES.contains(v));
+    let is_code = |code: f64| code.abs() >= OVERFLOW || CODES.contains(&code);
+    let (suspects, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| is_code(*v));
     let Some([low, high]) = ends(&others).filter(|_| others.len() > 1) else { return Vec::new() };
     let is_far = |code: f64| (code - high).max(low - code) > BEYOND * (high - low);
-    let occurs = |code: f64| suspects.iter().any(|(_, value)| *value == code);
     let mut found: Vec<f64> =
-        CODES.into_iter().filter(|code| is_far(*code) && occurs(*code)).collect();
+        suspects.into_iter().map(|(_, code)| code).filter(|code| is_far(*code)).collect();
+    found.sort_by(f64::total_cmp);
+    found.dedup();
     found.extend(spikes(&others));
     found
 }
@@ -187,6 +196,10 @@ mod tests {
         column((0..200).map(value).collect())
     }
 
+    fn codes_of(name: &str, values: Vec<f64>) -> Vec<String> {
+        codes(name, &column(values))
+    }
+
     #[test]
     fn codes_far_from_the_values_are_named_with_their_rows() {
         let found = codes("T", &wave(|k, v| if k % 90 == 7 { -999.0 } else { v }));
@@ -199,6 +212,13 @@ mod tests {
             _ => v,
         };
         assert_eq!(codes("T", &wave(several)).len(), 3, "each of several codes");
+        // Codes of overflow do not hide others, in a few rows as well.
+        let few: Vec<f64> = (0..10).map(|k| 1.5 + 0.1 * f64::from(k)).collect();
+        let coded = |codes: &[f64]| codes_of("U", [&few[..], codes].concat());
+        let found = coded(&[-999.0, 9.9e37, f64::MAX]);
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found[1].starts_with("9.9E37 in row 12 of `U` is far"), "{}", found[1]);
+        assert!(coded(&[-9.9e37])[0].starts_with("-9.9E37 in row 11"));
         // A resistance of 999 Ohm among such of 500 to 1500.
         assert!(
             codes("R", &wave(|k, _| if k == 9 { 999.0 } else { 500.0 + 5.0 * k as f64 }))
