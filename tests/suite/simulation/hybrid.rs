@@ -435,7 +435,8 @@ fn what_hybrid_models_may_not_do_is_refused_with_a_reason() {
         ),
         ("Boolean a; Boolean b; equation a = not b; b and a = true;", "discrete"),
         ("Real y; equation y = x; when x > 1 then reinit(2*y, 1); end when;", "not a state"),
-        ("Real y = pre(x) + pre(2*x);", "not a variable"),
+        ("Integer n = integer(x); Real y = pre(n) + pre(2*n);", "not a variable"),
+        ("Real y = pre(x);", "in when-clauses only"),
         ("Boolean s = sample(x, 1);", "parameters"),
     ] {
         let text = format!("model M Real x = time; {body} end M;");
