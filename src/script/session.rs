@@ -11,6 +11,7 @@
 use super::access::SessionWorld;
 use super::access::faults::cannot;
 use super::builtins::extensions::Extensions;
+use super::language::compiled_functions::ScriptFunctions;
 use super::language::execution::{Execution, Iteration, RunStatus, Stop};
 use super::language::follow_up::FollowUps;
 use super::language::output::Output;
@@ -53,6 +54,7 @@ pub struct Session {
     pub(super) statuses: Statuses,
     pub(super) classes: Classes,
     pub(super) models: CompiledModels,
+    pub(super) functions: ScriptFunctions,
     /// The dialect that the outermost script shows, where none was asked for.
     pub(crate) recognized: Dialect,
     extensions: Extensions,
@@ -75,6 +77,7 @@ impl Session {
             statuses: Statuses::default(),
             classes: Classes::default(),
             models: CompiledModels::default(),
+            functions: ScriptFunctions::default(),
             recognized: Dialect::default(),
             extensions: Extensions::default(),
             at_end: Vec::new(),

@@ -78,6 +78,8 @@ pub enum Instruction {
     Assert { a: Register, message: u32 },
     /// Warns unless `a` holds.
     Warn { a: Register, message: u32 },
+    /// Fails unless `a` is finite.
+    Finite { a: Register },
 }
 
 /// A function for arguments of known sizes.

@@ -89,6 +89,11 @@ impl Machine {
         &self.notices
     }
 
+    /// Whether there are notices, which are forgotten.
+    pub(crate) fn take_notices(&mut self) -> bool {
+        !std::mem::take(&mut self.notices).is_empty()
+    }
+
     /// Notes that zero was taken in the call of a function, and where.
     pub(crate) fn note_default(&mut self, called: u32, failure: Failure) {
         let is_it = |(known, noted): &(u32, Failure)| {
@@ -673,6 +678,7 @@ pub(super) fn execute<T: Number>(
                     return Err(Reason::Unassigned);
                 }
             }
+            Instruction::Finite { a } => drop(finite(r[a as usize])?),
             Instruction::Assert { a, .. } => {
                 if !decided(r[a as usize])? {
                     return Err(Reason::Assertion);

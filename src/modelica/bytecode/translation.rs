@@ -387,11 +387,15 @@ impl Translation<'_> {
 
     /// Sets a result that must be finite.
     fn set_finite(&mut self, d: Register, result: Operand, at: usize) {
-        let magnitude = self.builder.ins().fabs(result.v);
+        self.go_on_if_finite(result.v, at);
+        self.set(d, result);
+    }
+
+    fn go_on_if_finite(&mut self, value: Value, at: usize) {
+        let magnitude = self.builder.ins().fabs(value);
         let infinite = self.builder.ins().f64const(f64::INFINITY);
         let is_finite = self.builder.ins().fcmp(FloatCC::LessThan, magnitude, infinite);
         self.go_on_if(is_finite, at);
-        self.set(d, result);
     }
 
     fn instruction(&mut self, at: usize, instruction: &Instruction) {
@@ -427,6 +431,10 @@ impl Translation<'_> {
             Instruction::JumpUnless { a, target } => self.jump_unless(a, target, at),
             Instruction::Call { .. } | Instruction::External { .. } => self.leave(at),
             Instruction::Check { a, n } => self.check(a, n, at),
+            Instruction::Finite { a } => {
+                let value = self.get(a).v;
+                self.go_on_if_finite(value, at);
+            }
             Instruction::Assert { a, .. } | Instruction::Warn { a, .. } => {
                 let holds = self.decided(a, at);
                 self.go_on_if(holds, at);

@@ -32,7 +32,9 @@ impl Functions {
     fn can_run(&self, code: &Code, instruction: &Instruction) -> bool {
         let all = |registers: &[u32]| registers.iter().all(|register| code.has(*register, 1));
         match *instruction {
-            Instruction::Constant { d: a, .. } | Instruction::JumpUnless { a, .. } => all(&[a]),
+            Instruction::Constant { d: a, .. }
+            | Instruction::JumpUnless { a, .. }
+            | Instruction::Finite { a } => all(&[a]),
             Instruction::Unassign { d: a, n } | Instruction::Check { a, n } => code.has(a, n),
             Instruction::Move { d, a, n } => code.has(d, n) && code.has(a, n),
             // Where an offset leads to is checked when it is known.

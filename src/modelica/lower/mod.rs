@@ -54,6 +54,7 @@ pub use dae::*;
 pub(crate) use default_values::fold_parameters;
 pub use equation::*;
 pub use events::*;
+pub use function::CompiledFunctions;
 pub(crate) use function::warning_of;
 pub(crate) use scalar_types::is_real;
 pub use shape::Shape;

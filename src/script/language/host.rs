@@ -4,7 +4,7 @@ use super::workspace::check_type;
 use crate::builtins;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::errors::INTERRUPTED;
-use crate::eval::{Callee, Function, Host, Scope, ScriptHost};
+use crate::eval::{Callee, Function, Host, RunCompiled, Scope, ScriptHost};
 use crate::external::c::Request;
 use crate::external::{Entry, Outside, Random};
 use crate::name::{Ident, Name};
@@ -64,6 +64,10 @@ impl Host for Session {
 
     fn warn(&mut self, warning: Diagnostic) {
         self.report(warning);
+    }
+
+    fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
+        Some(self)
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

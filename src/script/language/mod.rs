@@ -3,6 +3,7 @@
 
 mod callees;
 mod commands;
+pub(crate) mod compiled_functions;
 mod constants;
 mod declarations;
 pub mod echo;

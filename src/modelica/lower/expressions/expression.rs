@@ -45,8 +45,8 @@ impl<T: Target> Lowering<'_, T> {
             ExpressionKind::Unary { operator, operand } => match operator {
                 UnaryOperator::Plus | UnaryOperator::ElementwisePlus => self.array(operand)?,
                 UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => {
-                    let operand = self.array(operand)?;
-                    self.map_unary(super::Unary::Neg, operand)
+                    let numbers = self.array(operand)?;
+                    self.negated(numbers, operand)
                 }
                 UnaryOperator::Not => {
                     let operand = self.array(operand)?;

@@ -18,12 +18,32 @@ use std::sync::Arc;
 /// The greatest exponent of a matrix.
 const MAX_POWER: f64 = 64.0;
 
+/// See [`Lowering::may_be_inexact`].
+const SMALL_INTEGER: f64 = 1_048_576.0;
+
 impl<T: Target> Lowering<'_, T> {
     pub(super) fn map_unary(&mut self, op: Unary, mut a: Array<T::Scalar>) -> Array<T::Scalar> {
         for element in &mut a.elements {
             *element = self.target.unary(op, *element);
         }
         a
+    }
+
+    /// An Integer is taken from zero, and not negated: it has no negative zero.
+    pub(super) fn negated(
+        &mut self,
+        mut numbers: Array<T::Scalar>,
+        operand: &Expression,
+    ) -> Array<T::Scalar> {
+        let varies = numbers.elements.iter().any(|x| self.target.as_constant(*x).is_none());
+        if !varies || self.type_of(operand) != ValueType::Integer {
+            return self.map_unary(Unary::Neg, numbers);
+        }
+        let zero = self.target.constant(0.0);
+        for element in &mut numbers.elements {
+            *element = self.target.binary(Binary::Sub, zero, *element);
+        }
+        numbers
     }
 
     pub(super) fn binary(&mut self, e: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
@@ -64,11 +84,14 @@ impl<T: Target> Lowering<'_, T> {
         Ok(Lowered::Array(array))
     }
 
-    /// Whether Integers may lead beyond those that are exact: a sum with a number is far from it, and would
-    /// have to be made too often.
+    /// Whether Integers may lead beyond those that are exact. A sum with a small number is far from it, and
+    /// would have to be made too often: 2^32 such sums do not get from 2^52 to 2^53, and no call has so many
+    /// instructions.
     fn may_be_inexact(&self, operator: BinaryOperator, sides: [&Array<T::Scalar>; 2]) -> bool {
         let varies = |array: &Array<T::Scalar>| {
-            array.elements.iter().any(|element| self.target.as_constant(*element).is_none())
+            let is_small = |x: f64| x.abs() <= SMALL_INTEGER;
+            let mut elements = array.elements.iter();
+            elements.any(|element| !self.target.as_constant(*element).is_some_and(is_small))
         };
         match operator {
             BinaryOperator::Multiply | BinaryOperator::ElementwiseMultiply => true,

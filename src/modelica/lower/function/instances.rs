@@ -26,8 +26,8 @@ use std::sync::Arc;
 const MAX_DEPTH: usize = 40;
 /// Most functions.
 const MAX_INSTANCES: usize = 5_000;
-/// Most instructions of all functions.
-pub(super) const MAX_INSTRUCTIONS: usize = 5_000_000;
+/// Most instructions of all functions of a model.
+const MAX_INSTRUCTIONS: usize = 5_000_000;
 
 /// Calls of numbers are left to the simulation after so many that took all the instructions that one
 /// may take.
@@ -165,6 +165,10 @@ pub(crate) struct Instances {
     /// The last call of numbers that took too many.
     exhausted: Option<Failure>,
     instructions: usize,
+    /// Most of them.
+    pub(super) max_instructions: usize,
+    /// Whether results beyond the largest Real are faults, and not infinite.
+    pub(super) refuses_overflow: bool,
     /// Whether a statement is at hand that may write.
     pub(crate) may_write: bool,
     /// What becomes of the output of functions whose values are used.
@@ -183,7 +187,7 @@ impl Instances {
     /// Functions of a model, which is strict or not.
     pub(crate) fn new(strict: bool) -> Instances {
         let functions = Functions { takes_defaults: !strict, ..Functions::default() };
-        Instances { functions, ..Instances::default() }
+        Instances { functions, max_instructions: MAX_INSTRUCTIONS, ..Instances::default() }
     }
 
     /// The finished functions, and warnings of them.
@@ -471,10 +475,11 @@ impl Instances {
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
         code.inverses = self.inverses(flat, function, &signature.arguments, span);
         self.instructions += code.instructions.len();
-        if self.instructions > MAX_INSTRUCTIONS {
+        if self.instructions > self.max_instructions {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "the functions of this model need more than {MAX_INSTRUCTIONS} instructions"
+                "the functions of this model need more than {} instructions",
+                self.max_instructions
             )
             .at(function.span));
         }
@@ -550,6 +555,14 @@ impl Instances {
         };
         !self.all_called(function, |function| {
             !self.functions.codes[function as usize].externals.iter().any(reads)
+        })
+    }
+
+    /// Whether a function, or one that it calls, is in C or carried out by the interpreter.
+    pub(super) fn leaves_program(&self, function: u32) -> bool {
+        let leaves = |call: &ExternalCall| call.entry.c.is_some() || call.in_modelica.is_some();
+        !self.all_called(function, |function| {
+            !self.functions.codes[function as usize].externals.iter().any(leaves)
         })
     }
 

@@ -36,6 +36,7 @@ pub(super) use instances::Instances;
 use instances::Output;
 pub(super) use inverse::{Inverts, inverts};
 pub(crate) use notices::warning_of;
+pub use on_demand::CompiledFunctions;
 pub(super) use on_demand::OnDemand;
 pub(super) use repeated::Before;
 pub(super) use results::CallResults;

@@ -19,14 +19,55 @@ const WORTH_COMPILING: u32 = 3;
 const LONG: u64 = 10_000;
 /// Most combinations of functions, sizes and Integers.
 const MAX_KEPT: usize = 2_000;
+/// Most instructions of a function that a script calls: to compile so many takes about 20 ms, and where
+/// statements work on large arrays the interpreter is quick.
+const MAX_INSTRUCTIONS_IN_SCRIPTS: usize = 100_000;
+/// Most numbers in the arguments of a function that a script calls, for the same reason: the results of a
+/// large population are fewer.
+const MAX_NUMBERS_IN_SCRIPTS: usize = 50_000;
+
+/// From greater Integers sums with small ones may lead beyond 2^53, where scripts are exact and compiled
+/// functions are not.
+const LARGEST_IN_SCRIPTS: f64 = 4_503_599_627_370_496.0;
+
+/// Compiled functions of a model with nothing but functions.
+pub(in crate::lower) struct OnDemand {
+    library: Arc<FlatModel>,
+    compiled: CompiledFunctions,
+}
+
+impl OnDemand {
+    /// The compiler of a call that has taken so many statements, if these are enough.
+    pub(in crate::lower) fn of_long_call(
+        compiler: &mut Option<OnDemand>,
+        statements: u64,
+        library: impl FnOnce() -> Arc<FlatModel>,
+    ) -> Option<&mut dyn RunCompiled> {
+        if compiler.is_none() && statements >= LONG {
+            let compiled = CompiledFunctions::new(Instances::new(true), false);
+            *compiler = Some(OnDemand { library: library(), compiled });
+        }
+        compiler.as_mut().map(|compiler| compiler as &mut dyn RunCompiled)
+    }
+}
+
+impl RunCompiled for OnDemand {
+    fn run_compiled(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Vec<Value>> {
+        let OnDemand { library, compiled } = self;
+        compiled.call(function, inputs, || Some(library.clone()))
+    }
+}
 
 /// Functions compiled for the interpreter, and how often it called those that are not.
-pub(in crate::lower) struct OnDemand {
-    /// A model with nothing but functions.
-    library: Arc<FlatModel>,
+pub struct CompiledFunctions {
     instances: Instances,
     machine: Machine,
     kept: FxHashMap<Key, State>,
+    /// The functions among the keys, whose places in memory no others take.
+    functions: FxHashMap<usize, Arc<Function>>,
+    in_scripts: bool,
+    /// How many calls they carried out.
+    calls: u64,
 }
 
 /// A function, by its place in memory, the sizes of its arguments, and the Integers that it is compiled
@@ -41,36 +82,64 @@ enum State {
     Refused,
 }
 
-impl OnDemand {
-    /// Compiles functions of a model that is used for nothing else.
-    fn new(library: Arc<FlatModel>) -> OnDemand {
-        OnDemand {
-            instances: Instances::new(true),
+impl CompiledFunctions {
+    fn new(instances: Instances, in_scripts: bool) -> CompiledFunctions {
+        CompiledFunctions {
+            instances,
             machine: Machine::default(),
             kept: FxHashMap::default(),
-            library,
+            functions: FxHashMap::default(),
+            in_scripts,
+            calls: 0,
         }
     }
 
-    /// The compiler of a call that has taken so many statements, if these are enough.
-    pub(in crate::lower) fn of_long_call(
-        compiler: &mut Option<OnDemand>,
-        statements: u64,
-        library: impl FnOnce() -> Arc<FlatModel>,
-    ) -> Option<&mut dyn RunCompiled> {
-        if compiler.is_none() && statements >= LONG {
-            *compiler = Some(OnDemand::new(library()));
-        }
-        compiler.as_mut().map(|compiler| compiler as &mut dyn RunCompiled)
+    /// Those that scripts call, where results beyond the largest Real are faults, as long as no name
+    /// changes what it stands for.
+    pub fn of_scripts() -> CompiledFunctions {
+        let mut instances = Instances::new(true);
+        instances.refuses_overflow = true;
+        instances.max_instructions = MAX_INSTRUCTIONS_IN_SCRIPTS;
+        CompiledFunctions::new(instances, true)
+    }
+
+    /// The outputs of a pure function for values of all its inputs, the same that its statements give.
+    /// `None` if it is not compiled, fails, gives NaN or warns: then the statements are executed, and
+    /// say why. `library`: a model with the function and all that it calls.
+    pub fn call(
+        &mut self,
+        function: &Arc<Function>,
+        inputs: &[&Value],
+        library: impl FnMut() -> Option<Arc<FlatModel>>,
+    ) -> Option<Vec<Value>> {
+        let instance = self.instance(function, inputs, library)?;
+        let outputs = self.run(function, &instance, inputs)?;
+        self.calls += 1;
+        Some(outputs)
+    }
+
+    /// How many calls they carried out.
+    pub fn calls(&self) -> u64 {
+        self.calls
     }
 
     /// The compiled function, if it is worth it and possible.
-    fn instance(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Instance> {
+    fn instance(
+        &mut self,
+        function: &Arc<Function>,
+        inputs: &[&Value],
+        mut library: impl FnMut() -> Option<Arc<FlatModel>>,
+    ) -> Option<Instance> {
+        let numbers = |input: &&Value| dims_of(input).iter().product::<usize>();
+        let is_large = inputs.iter().map(numbers).sum::<usize>() > MAX_NUMBERS_IN_SCRIPTS;
+        if is_large && self.in_scripts {
+            return None;
+        }
         let mut sizes = Vec::new();
         inputs.iter().for_each(|input| sizes.extend(dims_of(input).iter().map(|n| *n as u64)));
         let address = Arc::as_ptr(function).addr();
         let key = (address, sizes.clone().into_boxed_slice());
-        match self.state(key, function, inputs, false)? {
+        match self.state(key, function, inputs, false, &mut library)? {
             State::Compiled(instance) => return Some(instance.clone()),
             State::NeedsIntegers => {}
             State::Called(_) | State::Refused => return None,
@@ -78,7 +147,7 @@ impl OnDemand {
         for (input, value) in function.inputs.iter().zip(inputs) {
             sizes.extend(whole(input, value).map(f64::to_bits));
         }
-        match self.state((address, sizes.into()), function, inputs, true)? {
+        match self.state((address, sizes.into()), function, inputs, true, &mut library)? {
             State::Compiled(instance) => Some(instance.clone()),
             _ => None,
         }
@@ -91,6 +160,7 @@ impl OnDemand {
         function: &Arc<Function>,
         inputs: &[&Value],
         with_integers: bool,
+        library: &mut dyn FnMut() -> Option<Arc<FlatModel>>,
     ) -> Option<&State> {
         if self.kept.len() >= MAX_KEPT && !self.kept.contains_key(&key) {
             return None;
@@ -101,9 +171,13 @@ impl OnDemand {
             Some(_) => WORTH_COMPILING,
         };
         if calls + 1 < WORTH_COMPILING {
+            self.functions.entry(key.0).or_insert_with(|| function.clone());
             self.kept.insert(key.clone(), State::Called(calls + 1));
         } else if calls + 1 == WORTH_COMPILING {
-            let state = self.compiled(function, inputs, with_integers);
+            let state = match library() {
+                Some(library) => self.compiled(&library, function, inputs, with_integers),
+                None => State::Refused,
+            };
             self.kept.insert(key.clone(), state);
         }
         self.kept.get(&key)
@@ -111,6 +185,7 @@ impl OnDemand {
 
     fn compiled(
         &mut self,
+        library: &Arc<FlatModel>,
         function: &Arc<Function>,
         inputs: &[&Value],
         with_integers: bool,
@@ -128,17 +203,20 @@ impl OnDemand {
         if !function.outputs.iter().all(is_numeric) {
             return State::Refused;
         }
-        match self.instances.instance(&self.library, function, &known, Span::NONE) {
+        match self.instances.instance(library, function, &known, Span::NONE) {
             Ok(instance) if instance.impure || instance.writes => State::Refused,
             // A file may be rewritten between two calls.
             Ok(instance) if self.instances.reads_files(instance.code) => State::Refused,
+            Ok(instance) if self.in_scripts && self.instances.leaves_program(instance.code) => {
+                State::Refused
+            }
             Ok(instance) => State::Compiled(instance),
             Err(e) if e.code == NO_CONSTANT_VALUE && !with_integers => State::NeedsIntegers,
             Err(_) => State::Refused,
         }
     }
 
-    /// The outputs of a compiled function; `None` if it fails, or gives NaN.
+    /// The outputs of a compiled function; `None` if it fails, warns, or gives NaN.
     fn run(
         &mut self,
         function: &Function,
@@ -146,15 +224,22 @@ impl OnDemand {
         inputs: &[&Value],
     ) -> Option<Vec<Value>> {
         let mut numbers = Vec::new();
-        inputs.iter().try_for_each(|input| append_numbers(input, &mut numbers))?;
+        for (input, value) in function.inputs.iter().zip(inputs) {
+            let first = numbers.len();
+            append_numbers(value, &mut numbers)?;
+            let bounded = self.in_scripts && matches!(input.value_type, ValueType::Integer);
+            if bounded && numbers[first..].iter().any(|x| x.abs() > LARGEST_IN_SCRIPTS) {
+                return None;
+            }
+        }
         let passed = numbers.iter().zip(&instance.passed);
         let passed = passed.filter(|(_, passed)| **passed).map(|(number, _)| *number);
         let functions = &self.instances.functions;
-        let results = self.machine.call(functions, instance.code, passed).ok()?;
-        if results.iter().any(|x| x.is_nan()) {
+        let results = self.machine.call(functions, instance.code, passed).ok()?.to_vec();
+        if self.machine.take_notices() || results.iter().any(|x| x.is_nan()) {
             return None;
         }
-        let mut rest = results;
+        let mut rest = results.as_slice();
         let outputs = function.outputs.iter().zip(&instance.outputs).map(|(output, shape)| {
             let Shape::Array(dims) = shape else { return None };
             let (own, others) = rest.split_at_checked(shape.len())?;
@@ -162,13 +247,6 @@ impl OnDemand {
             value_of(own, dims, &output.value_type)
         });
         outputs.collect()
-    }
-}
-
-impl RunCompiled for OnDemand {
-    fn run_compiled(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Vec<Value>> {
-        let instance = self.instance(function, inputs)?;
-        self.run(function, &instance, inputs)
     }
 }
 

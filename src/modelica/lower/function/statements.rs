@@ -2,7 +2,7 @@
 
 use super::emitter::{Emitter, Operand};
 use super::external_kinds::prints;
-use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
+use super::instances::{Argument, Instances};
 use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::diag::Diagnostic;
@@ -292,10 +292,11 @@ impl Domain for Body<'_, '_> {
     type Condition = Operand;
 
     fn statement(&mut self, statement: &Statement) -> Done<Self> {
-        if self.emitter.len() > MAX_INSTRUCTIONS {
+        let limit = self.instances.max_instructions;
+        if self.emitter.len() > limit {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "this function needs more than {MAX_INSTRUCTIONS} instructions"
+                "this function needs more than {limit} instructions"
             )
             .at(statement.span));
         }

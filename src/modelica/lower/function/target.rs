@@ -27,6 +27,15 @@ impl Body<'_, '_> {
         self.emitter.emit(instruction(d));
         Operand::Register(d)
     }
+
+    /// As [`Body::computed`], of a number that may exceed the largest Real.
+    fn computed_number(&mut self, instruction: impl FnOnce(u32) -> Instruction) -> Operand {
+        let number = self.computed(instruction);
+        if let (true, Operand::Register(a)) = (self.instances.refuses_overflow, number) {
+            self.emitter.emit(Instruction::Finite { a });
+        }
+        number
+    }
 }
 
 impl Operations for Body<'_, '_> {
@@ -62,7 +71,7 @@ impl Operations for Body<'_, '_> {
             return self.binary(Binary::Mul, a, a);
         }
         let (a, b) = (self.emitter.register(a), self.emitter.register(b));
-        self.computed(|d| match operation {
+        self.computed_number(|d| match operation {
             Binary::Add => Instruction::Add { d, a, b },
             Binary::Sub => Instruction::Sub { d, a, b },
             // Truths are 0 and 1.
@@ -108,7 +117,9 @@ impl Operations for Body<'_, '_> {
         let function = Elementary::of(function);
         let registers: Vec<u32> = arguments.iter().map(|a| self.emitter.register(*a)).collect();
         Ok(match (function.value, registers.as_slice()) {
-            (Value::Unary(_), &[a]) => self.computed(|d| Instruction::Unary { function, d, a }),
+            (Value::Unary(_), &[a]) => {
+                self.computed_number(|d| Instruction::Unary { function, d, a })
+            }
             (Value::Binary(_), &[a, b]) => {
                 self.computed(|d| Instruction::Binary { function, d, a, b })
             }

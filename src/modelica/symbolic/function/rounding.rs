@@ -11,7 +11,8 @@ pub(crate) const LARGEST_INTEGER: f64 = 9_007_199_254_740_991.0;
 pub(crate) const INTEGER_ARITHMETIC: &str = "Integer arithmetic";
 
 fn exact(x: f64) -> f64 {
-    if x.abs() <= LARGEST_INTEGER { x } else { f64::NAN }
+    // An Integer has no negative zero.
+    if x.abs() <= LARGEST_INTEGER { x + 0.0 } else { f64::NAN }
 }
 
 const NONZERO_DIVISOR: Option<Domain> =
@@ -20,7 +21,7 @@ const NONZERO_DIVISOR: Option<Domain> =
 pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         domain: NONZERO_DIVISOR,
-        ..jumping("div", Value::Binary(|x, y| (x / y).trunc()), ResultType::AsArguments, zero)
+        ..jumping("div", Value::Binary(|x, y| (x / y).trunc() + 0.0), ResultType::AsArguments, zero)
     },
     Function {
         domain: NONZERO_DIVISOR,
