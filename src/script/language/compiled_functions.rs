@@ -1,10 +1,11 @@
 //! Functions that scripts call again and again, compiled for the sizes at hand.
 
-use crate::eval::{Function, RunCompiled};
+use crate::Dialect;
+use crate::eval::Function;
 use crate::flatten::FlatModel;
 use crate::lower::CompiledFunctions;
+use crate::models::classes::Classes;
 use crate::value::Value;
-use crate::{Dialect, Session};
 use std::sync::Arc;
 
 #[cfg(test)]
@@ -19,16 +20,23 @@ pub(crate) struct ScriptFunctions {
     names: (u64, Dialect),
 }
 
-impl RunCompiled for Session {
-    fn run_compiled(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Vec<Value>> {
-        let names = (self.classes.revision(), self.dialect());
-        if self.functions.names != names {
-            self.functions = ScriptFunctions { compiled: None, names };
+impl ScriptFunctions {
+    /// The outputs of a function for values of its inputs, if it is compiled and gives them.
+    pub(super) fn call(
+        &mut self,
+        function: &Arc<Function>,
+        inputs: &[&Value],
+        classes: &mut Classes,
+        dialect: Dialect,
+    ) -> Option<Vec<Value>> {
+        let names = (classes.revision(), dialect);
+        if self.names != names {
+            *self = ScriptFunctions { compiled: None, names };
         }
-        let compiled = self.functions.compiled.get_or_insert_with(CompiledFunctions::of_scripts);
+        let compiled = self.compiled.get_or_insert_with(CompiledFunctions::of_scripts);
         compiled.call(function, inputs, || {
-            let functions = self.classes.library.function(&function.name).ok().flatten()?;
-            let is_complete = self.classes.library.take_problems().is_empty();
+            let functions = classes.library.function(&function.name).ok().flatten()?;
+            let is_complete = classes.library.take_problems().is_empty();
             let library = FlatModel { functions, strict: true, ..FlatModel::default() };
             is_complete.then(|| Arc::new(library))
         })

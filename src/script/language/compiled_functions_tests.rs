@@ -1,3 +1,5 @@
+//! Functions that scripts call again and again: the same values, warnings and errors as before.
+
 use crate::Session;
 use crate::value::Value;
 use crate::world::MemoryWorld;
@@ -13,7 +15,7 @@ fn session(classes: &str) -> (Session, impl Fn() -> String) {
     (session, move || streams.output() + &streams.errors())
 }
 
-/// How many calls were carried out by compiled functions.
+/// How many calls compiled functions answered.
 fn compiled(session: &Session) -> u64 {
     session.functions.compiled.as_ref().map_or(0, |functions| functions.calls())
 }
@@ -92,7 +94,7 @@ fn a_compiled_function_warns_at_each_call() {
 }
 
 #[test]
-fn a_function_that_is_loaded_anew_is_compiled_anew() {
+fn a_function_that_is_loaded_again_is_compiled_again() {
     let (mut session, said) = session("function f input Real x; output Real y = 2*x; end f;");
     let calls = format!("for i in 1:{CALLS} loop y := f(3.0); end for;\n");
     session.run_text("a.mos", &calls);

@@ -82,6 +82,13 @@ impl Host for Session {
     }
 }
 
+impl RunCompiled for Session {
+    fn run_compiled(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Vec<Value>> {
+        let dialect = self.dialect();
+        self.functions.call(function, inputs, &mut self.classes, dialect)
+    }
+}
+
 impl ScriptHost for Session {
     /// Commands that run scripts work among the variables of the caller.
     fn call_builtin(

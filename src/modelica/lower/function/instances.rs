@@ -475,13 +475,10 @@ impl Instances {
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
         code.inverses = self.inverses(flat, function, &signature.arguments, span);
         self.instructions += code.instructions.len();
-        if self.instructions > self.max_instructions {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "the functions of this model need more than {} instructions",
-                self.max_instructions
-            )
-            .at(function.span));
+        let limit = self.max_instructions;
+        if self.instructions > limit {
+            let words = format!("the functions of this model need more than {limit} instructions");
+            return Err(fault!(NOT_SUPPORTED, "{words}").at(function.span));
         }
         self.functions.codes[instance.code as usize] = code;
         self.finished[instance.code as usize] = true;
@@ -558,7 +555,7 @@ impl Instances {
         })
     }
 
-    /// Whether a function, or one that it calls, is in C or carried out by the interpreter.
+    /// Whether a function, or one that it calls, is in C or interpreted.
     pub(super) fn leaves_program(&self, function: u32) -> bool {
         let leaves = |call: &ExternalCall| call.entry.c.is_some() || call.in_modelica.is_some();
         !self.all_called(function, |function| {

@@ -66,7 +66,7 @@ pub struct CompiledFunctions {
     /// The functions among the keys, whose places in memory no others take.
     functions: FxHashMap<usize, Arc<Function>>,
     in_scripts: bool,
-    /// How many calls they carried out.
+    /// How many calls they answered.
     calls: u64,
 }
 
@@ -118,7 +118,7 @@ impl CompiledFunctions {
         Some(outputs)
     }
 
-    /// How many calls they carried out.
+    /// How many calls they answered.
     pub fn calls(&self) -> u64 {
         self.calls
     }
