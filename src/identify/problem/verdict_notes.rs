@@ -52,6 +52,9 @@ fn by_profile(parameter: &SolvedParameter, found: &ByProfile, alone: bool) -> Ve
     } else if let Some(linear) = found.linear {
         findings.push(nonlinear(parameter, linear));
     }
+    if parameter.verdict == Some(Verdict::Identifiable) {
+        findings.extend(within_ranges(parameter));
+    }
     if !parameter.pieces.is_empty() {
         let part = |ends_of: &[f64; 2]| ends(*ends_of, parameter.value);
         let parts: Vec<String> = parameter.pieces.iter().map(part).collect();
@@ -129,6 +132,21 @@ fn beyond(parameter: &SolvedParameter, [pull, limit]: [f64; 2], alone: bool) -> 
     );
     let finding = Finding::new(FindingKind::AtBound, sentence);
     finding.parameters([name.as_str()]).statistic(pull, limit)
+}
+
+/// That the range of another parameter ends an interval.
+fn within_ranges(parameter: &SolvedParameter) -> Option<Finding> {
+    let sides = [("below", &parameter.held[0]), ("above", &parameter.held[1])];
+    let held = sides.into_iter().filter(|(_, held)| !held.is_empty());
+    let ends: Vec<String> =
+        held.map(|(side, held)| format!("{side} where {}", RangeEnd::words(held))).collect();
+    let sentence = format!(
+        "The 95 % interval of {} ends {}: with a wider range it would be wider.",
+        parameter.name,
+        ends.join(", and ")
+    );
+    let finding = Finding::new(FindingKind::Interval, sentence).severity(Severity::Information);
+    (!ends.is_empty()).then(|| finding.parameters([parameter.name.as_str()]))
 }
 
 fn nonlinear(parameter: &SolvedParameter, linear: [f64; 2]) -> Finding {

@@ -277,7 +277,15 @@ impl Solution {
         self.parameters[k].held = [0, 1].map(|side| self.ending_ranges(k, &profile.held[side]));
         let Grounds { linear, pulls, quantile, .. } = &self.grounds;
         let pull = pulls[k].map(|(pull, reach)| ([pull, *quantile], reach));
-        self.parameters[k].adopt(profile, linear[k], pull, budget)
+        let judged = self.parameters[k].adopt(profile, linear[k], pull, budget);
+        let own = &self.parameters[k];
+        // Among parameters whose changes cancel, it is the ranges that bound each.
+        let is_of_group = own.held.iter().flatten().any(|end| self.are_members(k, &end.parameter));
+        if is_of_group && own.verdict == Some(Verdict::Identifiable) {
+            self.parameters[k].verdict = Some(Verdict::PracticallyNonIdentifiable);
+            self.parameters[k].determined = Some(false);
+        }
+        judged
     }
 
     /// The ranges of others that end the interval of parameter `k` where they stand at these ends. Where
@@ -285,14 +293,17 @@ impl Solution {
     /// hold there; not in a group whose changes cancel, in which every interval is made by the ranges.
     fn ending_ranges(&self, k: usize, held: &[RangeEnd]) -> Vec<RangeEnd> {
         let ends = |own: &&RangeEnd| {
-            let Some(j) = self.parameters.iter().position(|other| other.name == own.parameter)
-            else {
-                return false;
-            };
-            let are_members = |group: &Vec<usize>| group.contains(&j) && group.contains(&k);
-            !self.parameters[j].at_bound || self.grounds.groups.iter().any(are_members)
+            let found = self.parameters.iter().find(|other| other.name == own.parameter);
+            found.is_some_and(|other| !other.at_bound) || self.are_members(k, &own.parameter)
         };
         held.iter().filter(ends).cloned().collect()
+    }
+
+    /// Whether the changes of parameter `k` and another one cancel in a group.
+    fn are_members(&self, k: usize, other: &str) -> bool {
+        let place = self.parameters.iter().position(|own| own.name == other);
+        let mut groups = self.grounds.groups.iter();
+        place.is_some_and(|j| groups.any(|group| group.contains(&j) && group.contains(&k)))
     }
 }
 
@@ -308,8 +319,7 @@ impl SolvedParameter {
         let [low, high] = ends;
         self.interval = Some([low.unwrap_or(self.range[0]), high.unwrap_or(self.range[1])]);
         self.open = [low.is_none(), high.is_none()];
-        let is_ended_by_data = self.open == [false; 2] && self.held.iter().all(Vec::is_empty);
-        let is_bounded = is_ended_by_data && self.is_precise();
+        let is_bounded = self.open == [false; 2] && self.is_precise();
         self.determined = Some(is_bounded);
         self.verdict = Some(match is_bounded {
             true => Verdict::Identifiable,
