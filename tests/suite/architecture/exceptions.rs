@@ -14,7 +14,7 @@ pub(super) const CALL_CYCLES: &[(&str, usize, &str)] = &[
         15,
         "a member is made when an expression first needs it, and its sizes need expressions",
     ),
-    ("Lowering", 14, BY_EXPRESSION),
+    ("Lowering", 12, BY_EXPRESSION),
     ("Evaluator", 11, BY_EXPRESSION),
     ("Builder", 3, BY_EXPRESSION),
     ("Body", 6, BY_EXPRESSION),

@@ -4,14 +4,15 @@
 use super::vectorized::sizes_for;
 use super::{Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::eval::{self, Callee, Function, FunctionComponent, Host, Scope, ValueType};
 use crate::fault;
 use crate::functions;
 use crate::lower::errors::ARRAY_MISMATCH;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
 use crate::syntax::visit::{Rewrite, rewrite_expression};
+use crate::value::Value;
 
 impl<T: Target> Lowering<'_, T> {
     /// Refuses an argument that has other sizes than its input. What it has beyond the dimensions of
@@ -62,7 +63,10 @@ impl<T: Target> Lowering<'_, T> {
         if inputs.is_open {
             return None;
         }
-        self.known_size(&size).ok()
+        match eval::evaluate(&size, &mut Scope::script(), &mut Alone) {
+            Ok(Value::Integer(size)) => usize::try_from(size).ok(),
+            _ => None,
+        }
     }
 }
 
@@ -78,6 +82,19 @@ fn fits(given: &[usize], declared: &[Option<usize>]) -> bool {
 fn shown(sizes: &[Option<usize>]) -> String {
     let size = |size: &Option<usize>| size.map_or(":".to_owned(), |size| size.to_string());
     format!("[{}]", sizes.iter().map(size).collect::<Vec<_>>().join(", "))
+}
+
+/// Evaluates what nothing but numbers and functions of the language are in.
+struct Alone;
+
+impl Host for Alone {
+    fn callee(&mut self, _: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(None)
+    }
+
+    fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        Ok(None)
+    }
 }
 
 /// Writes the values of inputs into a size, and the sizes of their arguments.

@@ -132,7 +132,10 @@ impl<T: Target> Lowering<'_, T> {
                 self.lower(value)
             }
             (Operator::Smooth, [_, value]) => self.without_events(value),
-            (Operator::Homotopy, [actual, simplified]) => self.homotopy(actual, simplified, span),
+            (Operator::Homotopy, [actual, simplified]) => {
+                let (actual, simplified) = (self.array(actual)?, self.array(simplified)?);
+                self.homotopy(actual, simplified, span)
+            }
             (Operator::SemiLinear, _) => self.semi_linear(arguments, span),
             (Operator::InTime(operator), _) => self.in_time(entry, operator, arguments, span),
             _ => Err(fault!(NOT_SUPPORTED, "`{}` in an expression", entry.name).at(span)),

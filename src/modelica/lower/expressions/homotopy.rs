@@ -3,17 +3,15 @@
 use super::{Array, Lowered, Lowering, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::source::Span;
-use crate::syntax::ast::Expression;
 
 impl<T: Target> Lowering<'_, T> {
     /// Both arguments, joined element by element as the target requires.
     pub(super) fn homotopy(
         &mut self,
-        actual: &Expression,
-        simplified: &Expression,
+        actual: Array<T::Scalar>,
+        simplified: Array<T::Scalar>,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let (actual, simplified) = (self.array(actual)?, self.array(simplified)?);
         if actual.dims != simplified.dims {
             return Err(size_fault(&actual.dims, &simplified.dims).at(span));
         }
