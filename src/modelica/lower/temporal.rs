@@ -76,8 +76,10 @@ impl Builder<'_> {
         }
         let variables = arguments.iter().filter_map(|a| self.dae.pool.as_variable(*a));
         let mut variables = variables.map(|variable| self.dae.variable(variable));
+        // What is declared `discrete` may be an input that holds its samples.
         let is_continuous = |variable: &&Variable| {
-            matches!(variable.kind, VariableKind::Unknown | VariableKind::Derivative(_))
+            variable.variability == Variability::Continuous
+                && matches!(variable.kind, VariableKind::Unknown | VariableKind::Derivative(_))
         };
         match variables.find(is_continuous) {
             None => Ok(()),
