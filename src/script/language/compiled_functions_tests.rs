@@ -108,7 +108,7 @@ fn a_function_that_is_loaded_again_is_compiled_again() {
 }
 
 #[test]
-fn functions_that_print_or_draw_random_numbers_are_not_compiled() {
+fn functions_that_print_are_not_compiled() {
     let calls: String = std::iter::repeat_n("y := F.printing(1.0);\n", CALLS).collect();
     let (code, said) = run(&calls);
     assert_eq!((code, said.matches("printed").count()), (0, CALLS), "{said}");

@@ -56,7 +56,7 @@ impl<T: Target> Lowering<'_, T> {
         found
     }
 
-    /// Start, step and stop of the range of an iterator; `None` where it is no range of numbers.
+    /// Start, step and stop of the range of an iterator; `None` where it is not a range of numbers.
     fn ends_of(&mut self, index: &ForIndex) -> Result<Option<[T::Scalar; 3]>, Diagnostic> {
         let Some(ExpressionKind::Range { start, step, stop }) =
             index.range.as_ref().map(|range| &range.kind)

@@ -19,8 +19,8 @@ const WORTH_COMPILING: u32 = 3;
 const LONG: u64 = 10_000;
 /// Most combinations of functions, sizes and Integers.
 const MAX_KEPT: usize = 2_000;
-/// Most instructions of a function that a script calls: to compile so many takes about 20 ms, and where
-/// statements work on large arrays the interpreter is quick.
+/// Most instructions of all functions that a script calls: where statements work on large arrays the
+/// interpreter is quick, and compiled code has an instruction for each element.
 const MAX_INSTRUCTIONS_IN_SCRIPTS: usize = 100_000;
 /// Most numbers in the arguments of a function that a script calls, for the same reason: the results of a
 /// large population are fewer.
