@@ -17,7 +17,7 @@ use crate::fmi::import::{
 use crate::fmi::{Archive, FmuError};
 use crate::identify::{ImportedModel, Model as _};
 use crate::results::{ResultTable, Series, Values};
-use crate::sim::{Settings, Trajectory, same_time};
+use crate::sim::{Settings, TimeBudget, Trajectory, same_time};
 use crate::{bail, fault};
 use std::io::Cursor;
 use std::path::Path;
@@ -459,6 +459,7 @@ const WRITTEN: f64 = 1e-6;
 pub(crate) fn other_starts(
     model: &ImportedModel,
     free: &[String],
+    time_budget: Option<TimeBudget>,
 ) -> Result<Option<String>, Fault> {
     let unit = model.unit_of();
     let is_set = |scalar: &&Scalar| {
@@ -468,7 +469,7 @@ pub(crate) fn other_starts(
     let scalars: Vec<&Scalar> = model.layout().scalars().iter().filter(is_set).collect();
     let names: Vec<String> = scalars.iter().map(|scalar| scalar.name.clone()).collect();
     let plan = model.planned(&[], &names)?;
-    let settings = Settings { max_total_steps: 0, ..model.settings() };
+    let settings = Settings { max_total_steps: 0, time_budget, ..model.settings() };
     let mut out = Trajectory::default();
     // It fails for the lack of steps, after its first row.
     let _ = unit.pool.simulate((&plan, &[]), &settings, &mut out);

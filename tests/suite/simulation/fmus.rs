@@ -721,7 +721,9 @@ fn a_unit_that_crashes_or_hangs_costs_its_simulations_alone() {
     let Some(here) = with_unit(3) else { return };
     fs::write(here.path().join("d.csv"), data()).expect("written");
     for (fault, said) in [(CRASH, "signal 11"), (HANG, "takes more time than allowed")] {
-        let entry = format!("max_seconds = 0.2\nset = {{ fault = {fault} }}\n");
+        // A unit that does not return is given some seconds each time.
+        let few = "[method]\npopulation = 4\n[stop]\nevaluations = 4\n";
+        let entry = format!("max_seconds = 0.2\nset = {{ fault = {fault} }}\n{few}");
         fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
         let problem = ["identify", "p.toml", "--allow-external", "--out", &format!("o{fault}")];
         let mut child = command(here.path(), &problem);

@@ -635,14 +635,25 @@ fn limit(
     if let Some(steps) = entry.max_steps {
         (settings.max_steps, settings.max_total_steps) = (steps, steps);
     }
-    let Some(seconds) = entry.max_seconds else { return Ok(()) };
+    settings.time_budget = time_budget(session, entry)?;
+    Ok(())
+}
+
+/// What a simulation may take of the clock. Where there is none, nothing is late.
+///
+/// # Errors
+///
+/// `max_seconds` that is not positive.
+pub(super) fn time_budget(
+    session: &Session,
+    entry: &ExperimentEntry,
+) -> Result<Option<TimeBudget>, Diagnostic> {
+    let Some(seconds) = entry.max_seconds else { return Ok(None) };
     if seconds.is_nan() || seconds <= 0.0 {
         let fault = fault!(BAD_OPTION, "`max_seconds` is {seconds}; it must be positive");
         return Err(fault.at(entry.places.at(&["max_seconds"])));
     }
-    // Where there is no clock, nothing is late.
-    settings.time_budget = session.world.clock().map(|clock| TimeBudget { seconds, clock });
-    Ok(())
+    Ok(session.world.clock().map(|clock| TimeBudget { seconds, clock }))
 }
 
 /// Over time, the simulation goes as far as it was measured.

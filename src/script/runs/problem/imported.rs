@@ -4,7 +4,7 @@
 use super::data::Notes;
 use super::driven::{InputColumns, no_column};
 use super::dynamics;
-use super::experiment::{Abscissa, Built, Source, Subject};
+use super::experiment::{Abscissa, Built, Source, Subject, time_budget};
 use super::file::{ExperimentEntry, ProblemFile, Role, ValueEntry};
 use super::inputs::{self, Declared, Times, Undecided};
 use super::parameters::Setting;
@@ -81,8 +81,10 @@ pub(super) fn build(
         imported::model(unit, given, samples).at(entry.places.at(&["data"])).map_err(one)?;
     check_names(&model, entry, &abscissa.name).map_err(one)?;
     let free: Vec<String> = parameters.iter().map(|(_, name)| name.clone()).collect();
-    let others =
-        imported::other_starts(&model, &free).at(entry.places.at(&["data"])).map_err(one)?;
+    let budget = time_budget(session, entry).map_err(one)?;
+    let others = imported::other_starts(&model, &free, budget)
+        .at(entry.places.at(&["data"]))
+        .map_err(one)?;
     others.into_iter().for_each(|sentence| notes.warn(sentence));
     if let Some(sentence) = other_kind(unit) {
         notes.add(sentence);
