@@ -30,6 +30,7 @@
 mod assertions;
 mod bracketing;
 mod dae_system;
+mod declared_ranges;
 mod delay_buffer;
 mod delays;
 mod difference_quotients;
@@ -77,6 +78,7 @@ mod system;
 mod transport_record;
 mod transports;
 
+pub use declared_ranges::DeclaredRange;
 pub use exchange::{Along, Snapshot};
 pub use loop_effort::LoopEffort;
 pub use modes::Treated;

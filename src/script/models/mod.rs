@@ -26,6 +26,7 @@ pub mod linearization;
 mod loading;
 mod measured_units;
 pub mod modification;
+mod outside_ranges;
 pub mod parameter_sets;
 mod parameters;
 mod places;

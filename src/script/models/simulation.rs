@@ -4,6 +4,7 @@ use super::changes::Changes;
 use super::compiled::Current;
 use super::final_state::FinalState;
 use super::hardest::{Hardest, hardest};
+use super::outside_ranges::warn_outside;
 use super::places::{in_argument, placed, strings, where_named};
 use super::stored::Request;
 pub use super::translated::Translated;
@@ -446,6 +447,7 @@ pub fn simulate(
     report_treatments(session, &system);
     report_undetermined(session, &system);
     report_notices(session, &system);
+    warn_outside(session, model, &system, &trajectory, settings.tolerance);
     let written = system.journal().carry_out(session).at(call);
     let why = match run {
         Ok(_) => {

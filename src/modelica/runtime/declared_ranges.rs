@@ -1,0 +1,50 @@
+//! The intervals of `min` and `max` (MLS §4.9) of the variables that a simulation computes.
+
+use super::System;
+use crate::codegen::Access;
+use crate::flatten::BaseType;
+use crate::lower::VariableKind;
+use crate::source::Span;
+use crate::symbolic::{Expr, evaluate};
+
+/// The interval that a variable is declared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeclaredRange {
+    /// Its position in [`Program::variables`](crate::codegen::Program::variables).
+    pub variable: usize,
+    /// Its smallest and largest value; infinite without.
+    pub limits: [f64; 2],
+    /// Its declaration.
+    pub span: Span,
+}
+
+impl System {
+    /// The intervals of all observed numbers that have one, with the parameters of this system.
+    pub fn declared_ranges(&self) -> Vec<DeclaredRange> {
+        let dae = &self.program.sorted.dae;
+        let mut values = dae.defaults.values().to_vec();
+        for (at, variable) in dae.variables.iter().enumerate() {
+            if matches!(variable.kind, VariableKind::Parameter { .. }) {
+                values[at] = self.registers[at];
+            }
+        }
+        let limit = |limit: Option<Expr>, otherwise| {
+            limit.map_or(otherwise, |limit| evaluate(&dae.pool, limit, &values[..]))
+        };
+        let range = |(at, info): (usize, &crate::codegen::VariableInfo)| {
+            let declared = dae.variable(info.variable);
+            let is_number = matches!(info.base, BaseType::Real | BaseType::Integer);
+            let is_limited = declared.min.is_some() || declared.max.is_some();
+            let is_observed = matches!(info.access, Access::Observed { .. });
+            (is_number && is_limited && is_observed).then(|| DeclaredRange {
+                variable: at,
+                limits: [
+                    limit(declared.min, f64::NEG_INFINITY),
+                    limit(declared.max, f64::INFINITY),
+                ],
+                span: declared.span,
+            })
+        };
+        self.program.variables().iter().enumerate().filter_map(range).collect()
+    }
+}
