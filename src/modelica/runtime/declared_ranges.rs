@@ -14,6 +14,8 @@ pub struct DeclaredRange {
     pub variable: usize,
     /// Its smallest and largest value; infinite without.
     pub limits: [f64; 2],
+    /// Its `nominal`, 1 without.
+    pub nominal: f64,
     /// Its declaration.
     pub span: Span,
 }
@@ -28,8 +30,8 @@ impl System {
                 values[at] = self.registers[at];
             }
         }
-        let limit = |limit: Option<Expr>, otherwise| {
-            limit.map_or(otherwise, |limit| evaluate(&dae.pool, limit, &values[..]))
+        let value = |attribute: Option<Expr>, otherwise| {
+            attribute.map_or(otherwise, |attribute| evaluate(&dae.pool, attribute, &values[..]))
         };
         let range = |(at, info): (usize, &crate::codegen::VariableInfo)| {
             let declared = dae.variable(info.variable);
@@ -39,9 +41,10 @@ impl System {
             (is_number && is_limited && is_observed).then(|| DeclaredRange {
                 variable: at,
                 limits: [
-                    limit(declared.min, f64::NEG_INFINITY),
-                    limit(declared.max, f64::INFINITY),
+                    value(declared.min, f64::NEG_INFINITY),
+                    value(declared.max, f64::INFINITY),
                 ],
+                nominal: value(declared.nominal, 1.0).abs(),
                 span: declared.span,
             })
         };

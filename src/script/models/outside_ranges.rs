@@ -13,7 +13,10 @@ use crate::sim::Trajectory;
 const MOST_NAMED: usize = 5;
 
 /// Warns of each declaration whose variables were outside at a row, by more than the errors of the
-/// integration: once for all elements of an array and all simulations.
+/// integration and of rounding: once for all elements of an array and all simulations.
+///
+/// Measured on 150 examples of the standard library: one is warned of, and what is 0 but for
+/// rounding (2.6e-34 of a mass fraction) is not.
 pub(super) fn warn_outside(
     session: &mut Session,
     model: &Translated,
@@ -31,7 +34,9 @@ pub(super) fn warn_outside(
         }
         let sign = if negated { -1.0 } else { 1.0 };
         let values = || trajectory.column(column).iter().map(|value| sign * value);
-        let Some(outside) = Outside::of(values, trajectory.time(), range.limits, tolerance) else {
+        let largest = values().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let slack = f64::max(tolerance * largest, f64::EPSILON * range.nominal);
+        let Some(outside) = Outside::of(values, trajectory.time(), range.limits, slack) else {
             continue;
         };
         let attribute = outside.attribute;
@@ -69,10 +74,8 @@ impl Outside {
         values: impl Fn() -> I,
         time: &[f64],
         [min, max]: [f64; 2],
-        tolerance: f64,
+        slack: f64,
     ) -> Option<Outside> {
-        let largest = values().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        let slack = tolerance * largest;
         let first = |attribute, limit: f64, beyond: &dyn Fn(f64) -> f64| {
             let mut rows = values().zip(time).filter(|(value, _)| beyond(*value) > slack);
             let (value, first) = rows.next()?;
@@ -101,9 +104,9 @@ impl Outside {
 mod tests {
     use super::*;
 
-    fn outside(values: &[f64], limits: [f64; 2], tolerance: f64) -> Option<String> {
+    fn outside(values: &[f64], limits: [f64; 2], slack: f64) -> Option<String> {
         let time: Vec<f64> = (0..values.len()).map(|row| row as f64).collect();
-        let found = Outside::of(|| values.iter().copied(), &time, limits, tolerance);
+        let found = Outside::of(|| values.iter().copied(), &time, limits, slack);
         found.map(|outside| outside.sentence("x"))
     }
 
@@ -120,8 +123,8 @@ mod tests {
 
     #[test]
     fn errors_of_the_integration_are_not_said() {
-        assert_eq!(outside(&[10.0, -9e-6, 5.0], [0.0, f64::INFINITY], 1e-6), None);
-        assert!(outside(&[10.0, -11e-6, 5.0], [0.0, f64::INFINITY], 1e-6).is_some());
+        assert_eq!(outside(&[10.0, -9e-6, 5.0], [0.0, f64::INFINITY], 1e-5), None);
+        assert!(outside(&[10.0, -11e-6, 5.0], [0.0, f64::INFINITY], 1e-5).is_some());
         assert_eq!(outside(&[1.0, 2.0], [f64::NEG_INFINITY, f64::INFINITY], 1e-6), None);
         assert_eq!(outside(&[f64::NAN, 2.0], [0.0, 3.0], 1e-6), None);
     }
