@@ -9,11 +9,13 @@ use crate::lower::errors::OUTSIDE_RANGE;
 use crate::runtime::System;
 use crate::sim::Trajectory;
 
-/// So many variables are named after a simulation; of the others the number is said.
-const MOST_NAMED: usize = 5;
+/// So many variables are shown with their declarations after a simulation; others are only named.
+const MOST_SHOWN: usize = 5;
+/// So many of these are named.
+const MOST_NAMED: usize = 10;
 
-/// Warns of each declaration whose variables were outside at a row, by more than the errors of the
-/// integration and of rounding: once for all elements of an array and all simulations.
+/// Warns of each variable that was outside at a row, by more than the errors of the integration and of
+/// rounding: once for all elements of an array and all simulations.
 ///
 /// Measured on 150 examples of the standard library: one is warned of, and what is 0 but for
 /// rounding (2.6e-34 of a mass fraction) is not.
@@ -24,7 +26,7 @@ pub(super) fn warn_outside(
     trajectory: &Trajectory,
     tolerance: f64,
 ) {
-    let mut named = 0;
+    let (mut shown, mut others) = (0, Vec::new());
     for range in system.declared_ranges() {
         let variable = &model.program.variables()[range.variable];
         let Access::Observed { column, negated } = variable.access else { continue };
@@ -36,24 +38,43 @@ pub(super) fn warn_outside(
         let values = || trajectory.column(column).iter().map(|value| sign * value);
         let largest = values().fold(0.0, |largest: f64, value| largest.max(value.abs()));
         let slack = f64::max(tolerance * largest, f64::EPSILON * range.nominal);
-        let Some(outside) = Outside::of(values, trajectory.time(), range.limits, slack) else {
-            continue;
-        };
-        let attribute = outside.attribute;
-        if !session.models.is_new_warning(range.span, attribute) {
-            continue;
-        }
-        named += 1;
-        if named <= MOST_NAMED {
-            let message = outside.sentence(&variable.name);
-            let help = format!("see whether the model holds there; else correct the `{attribute}`");
-            session.report(Fault::new(OUTSIDE_RANGE, message).help(help).at(range.span).warning());
+        for outside in Outside::both(values, trajectory.time(), range.limits, slack) {
+            let what = format!("{} of {}", outside.attribute, without_subscripts(&variable.name));
+            if !session.models.is_new_warning(range.span, &what) {
+                continue;
+            }
+            shown += 1;
+            if shown > MOST_SHOWN {
+                others.push(format!("`{}`", variable.name));
+                continue;
+            }
+            let help = format!(
+                "see whether the model holds there; else correct the `{}`",
+                outside.attribute
+            );
+            let fault = Fault::new(OUTSIDE_RANGE, outside.sentence(&variable.name)).help(help);
+            session.report(fault.at(range.span).warning());
         }
     }
-    if named > MOST_NAMED {
-        let message = format!("{} more variables leave their intervals", named - MOST_NAMED);
+    if !others.is_empty() {
+        let more = others.len().saturating_sub(MOST_NAMED);
+        others.truncate(MOST_NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let message = format!("also outside of `min` and `max`: {}{more}", others.join(", "));
         session.report(Fault::new(OUTSIDE_RANGE, message).at(session.call_site()).warning());
     }
+}
+
+/// The name that all elements of an array share.
+fn without_subscripts(name: &str) -> String {
+    let mut depth = 0;
+    let outside = |letter: &char| {
+        depth += i32::from(*letter == '[');
+        let is_outside = depth == 0;
+        depth -= i32::from(*letter == ']');
+        is_outside
+    };
+    name.chars().filter(outside).collect()
 }
 
 /// How a variable leaves its interval.
@@ -69,14 +90,14 @@ struct Outside {
 }
 
 impl Outside {
-    /// `None`: it does not.
-    fn of<I: Iterator<Item = f64>>(
+    /// How it does so on either side.
+    fn both<I: Iterator<Item = f64>>(
         values: impl Fn() -> I,
         time: &[f64],
         [min, max]: [f64; 2],
         slack: f64,
-    ) -> Option<Outside> {
-        let first = |attribute, limit: f64, beyond: &dyn Fn(f64) -> f64| {
+    ) -> impl Iterator<Item = Outside> {
+        let side = |attribute, limit: f64, beyond: &dyn Fn(f64) -> f64| {
             let mut rows = values().zip(time).filter(|(value, _)| beyond(*value) > slack);
             let (value, first) = rows.next()?;
             let farther = |one: (f64, f64), (value, time): (f64, &f64)| {
@@ -85,7 +106,9 @@ impl Outside {
             let farthest = rows.fold((value, *first), farther);
             Some(Outside { attribute, limit, time: *first, farthest })
         };
-        first("min", min, &|value| min - value).or_else(|| first("max", max, &|value| value - max))
+        let below = side("min", min, &|value| min - value);
+        let above = side("max", max, &|value| value - max);
+        below.into_iter().chain(above)
     }
 
     fn sentence(&self, name: &str) -> String {
@@ -104,28 +127,32 @@ impl Outside {
 mod tests {
     use super::*;
 
-    fn outside(values: &[f64], limits: [f64; 2], slack: f64) -> Option<String> {
+    fn outside(values: &[f64], limits: [f64; 2], slack: f64) -> Vec<String> {
         let time: Vec<f64> = (0..values.len()).map(|row| row as f64).collect();
-        let found = Outside::of(|| values.iter().copied(), &time, limits, slack);
-        found.map(|outside| outside.sentence("x"))
+        let found = Outside::both(|| values.iter().copied(), &time, limits, slack);
+        found.map(|outside| outside.sentence("x")).collect()
     }
 
     #[test]
     fn the_first_and_the_farthest_row_are_named() {
         let said = outside(&[1.0, -0.5, -2.0, 3.0], [0.0, f64::INFINITY], 1e-6);
-        assert_eq!(
-            said.as_deref(),
-            Some("`x` is below its `min` of 0 from t = 1; it is -2 at t = 2")
-        );
-        let said = outside(&[1.0, 7.0, 3.0], [f64::NEG_INFINITY, 4.0], 1e-6);
-        assert_eq!(said.as_deref(), Some("`x` is 7 at t = 1, above its `max` of 4"));
+        assert_eq!(said, ["`x` is below its `min` of 0 from t = 1; it is -2 at t = 2"]);
+        let said = outside(&[1.0, 7.0, -3.0], [0.0, 4.0], 1e-6);
+        let below = "`x` is -3 at t = 2, below its `min` of 0";
+        assert_eq!(said, [below, "`x` is 7 at t = 1, above its `max` of 4"]);
+    }
+
+    #[test]
+    fn elements_share_the_name_of_their_array() {
+        assert_eq!(without_subscripts("a[1].b[2, 3].c"), "a.b.c");
+        assert_eq!(without_subscripts("a[n[1]].b"), "a.b");
     }
 
     #[test]
     fn errors_of_the_integration_are_not_said() {
-        assert_eq!(outside(&[10.0, -9e-6, 5.0], [0.0, f64::INFINITY], 1e-5), None);
-        assert!(outside(&[10.0, -11e-6, 5.0], [0.0, f64::INFINITY], 1e-5).is_some());
-        assert_eq!(outside(&[1.0, 2.0], [f64::NEG_INFINITY, f64::INFINITY], 1e-6), None);
-        assert_eq!(outside(&[f64::NAN, 2.0], [0.0, 3.0], 1e-6), None);
+        assert_eq!(outside(&[10.0, -9e-6, 5.0], [0.0, f64::INFINITY], 1e-5), [""; 0]);
+        assert!(!outside(&[10.0, -11e-6, 5.0], [0.0, f64::INFINITY], 1e-5).is_empty());
+        assert_eq!(outside(&[1.0, 2.0], [f64::NEG_INFINITY, f64::INFINITY], 1e-6), [""; 0]);
+        assert_eq!(outside(&[f64::NAN, 2.0], [0.0, 3.0], 1e-6), [""; 0]);
     }
 }
