@@ -2,53 +2,49 @@
 //! of constants and parameters, and start values that are fixed. Those of variables show in a
 //! simulation.
 
-use crate::diag::Diagnostic;
-use crate::fault;
 use crate::flatten::BaseType;
-use crate::lower::errors::OUTSIDE_RANGE;
-use crate::lower::{Dae, Variable, VariableKind};
+use crate::lower::{Beyond, Dae, OutsideRanges, Variable, VariableKind};
 use crate::source::Span;
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
 
-/// Warns of each declaration that has such a value, once for all elements of an array.
+/// Warns of each variable that has such a value, once for all elements of an array.
 pub(super) fn warn_of_values_outside(dae: &mut Dae) {
-    let mut seen: FxHashSet<Span> = FxHashSet::default();
-    let mut warnings = Vec::new();
+    let mut seen: FxHashSet<(Span, String)> = FxHashSet::default();
+    let mut found = OutsideRanges::default();
     for (id, variable) in (0..).map(VarId).zip(&dae.variables) {
-        if let Some(warning) = outside(dae, id, variable)
-            && seen.insert(variable.span)
-        {
-            warnings.push(warning);
+        let Some((value, subject)) = known_value(dae, id, variable) else { continue };
+        let name = &variable.name;
+        for beyond in limits_exceeded(dae, variable, value) {
+            if seen.insert((variable.span, beyond.subject(name))) {
+                let sentence = format!("{subject}`{name}` is {value}, {}", beyond.words());
+                let help = format!("correct the value, or the attribute `{}`", beyond.attribute);
+                found.add(name, variable.span, sentence, help);
+            }
         }
     }
-    dae.warnings.extend(warnings);
+    dae.warnings.extend(found.warnings(None));
 }
 
-fn outside(dae: &Dae, id: VarId, variable: &Variable) -> Option<Diagnostic> {
+/// The value of a variable that has one at translation, and what to call it.
+fn known_value(dae: &Dae, id: VarId, variable: &Variable) -> Option<(f64, &'static str)> {
     if !matches!(variable.base, BaseType::Real | BaseType::Integer) {
         return None;
     }
-    let (value, subject) = match variable.kind {
-        VariableKind::Constant(value) => (value, ""),
-        VariableKind::Parameter { .. } => (dae.defaults.get(id), ""),
+    match variable.kind {
+        VariableKind::Constant(value) => Some((value, "")),
+        VariableKind::Parameter { .. } => Some((dae.defaults.get(id), "")),
         VariableKind::Unknown | VariableKind::Discrete if variable.fixed => {
-            (dae.defaults.of(dae, variable.start?), "the start value of ")
+            Some((dae.defaults.of(dae, variable.start?), "the start value of "))
         }
-        _ => return None,
-    };
-    let limit = |limit: Option<_>| limit.map_or(f64::NAN, |limit| dae.defaults.of(dae, limit));
-    let (min, max) = (limit(variable.min), limit(variable.max));
-    let (words, attribute, limit) = match () {
-        () if value < min => ("below", "min", min),
-        () if value > max => ("above", "max", max),
-        () => return None,
-    };
-    let name = &variable.name;
-    Some(
-        fault!(OUTSIDE_RANGE, "{subject}`{name}` is {value}, {words} its `{attribute}` of {limit}";
-            help: "correct the value, or the attribute `{attribute}`")
-        .at(variable.span)
-        .warning(),
-    )
+        _ => None,
+    }
+}
+
+fn limits_exceeded(dae: &Dae, variable: &Variable, value: f64) -> impl Iterator<Item = Beyond> {
+    let attributes = dae.defaults.attributes(dae, variable);
+    let min = attributes.min.filter(|min| value < *min);
+    let max = attributes.max.filter(|max| value > *max);
+    let min = min.map(|limit| Beyond { attribute: "min", limit });
+    min.into_iter().chain(max.map(|limit| Beyond { attribute: "max", limit }))
 }

@@ -5,23 +5,10 @@ use super::oscillations::TIME;
 use super::program::{Program, VariableInfo};
 use super::sequence::close;
 use crate::causalize::Block;
+pub use crate::lower::Attributes;
 use crate::lower::VariableKind;
-use crate::symbolic::{Expr, VarId, evaluate};
+use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashSet;
-
-/// Attributes of a variable with the default values of the parameters; `None` where the model says
-/// nothing, or where there is no number.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Attributes {
-    /// `start`.
-    pub start: Option<f64>,
-    /// `min`.
-    pub min: Option<f64>,
-    /// `max`.
-    pub max: Option<f64>,
-    /// `nominal`.
-    pub nominal: Option<f64>,
-}
 
 /// What a variable is computed from between events.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,22 +34,11 @@ impl Program {
         !(self.assertions.each.is_empty() && self.log_assertions.is_empty())
     }
 
-    /// The attributes of a variable of [`Program::variables`].
+    /// The attributes of a variable of [`Program::variables`] with the default values of the parameters.
     pub fn attributes(&self, variable: usize) -> Attributes {
         let Some(info) = self.variables().get(variable) else { return Attributes::default() };
         let dae = &self.sorted.dae;
-        let value = |e: Option<Expr>| {
-            let defaults = &dae.defaults;
-            let value = evaluate(&dae.pool, e?, defaults.values());
-            Some(value).filter(|value| value.is_finite())
-        };
-        let variable = dae.variable(info.variable);
-        Attributes {
-            start: value(variable.start),
-            min: value(variable.min),
-            max: value(variable.max),
-            nominal: value(variable.nominal),
-        }
+        dae.defaults.attributes(dae, dae.variable(info.variable))
     }
 
     /// Number of event indicators of its systems.

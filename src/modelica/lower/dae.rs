@@ -274,11 +274,6 @@ impl DefaultValues {
         self.values.get(variable.0 as usize).copied().unwrap_or(f64::NAN)
     }
 
-    /// All of them, by number of the variable.
-    pub(crate) fn values(&self) -> &[f64] {
-        &self.values
-    }
-
     /// With no value for variables declared later.
     pub(crate) fn grow(&mut self, n: usize) {
         self.values.resize(n, f64::NAN);

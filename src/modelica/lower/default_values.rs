@@ -3,11 +3,25 @@
 //! Where they are known before causalization, a parameter that cannot be set becomes a number, and
 //! a divisor made of parameters is distinguished from zero.
 
-use super::dae::{Dae, DefaultValues, VariableKind};
+use super::dae::{Dae, DefaultValues, Variable, VariableKind};
 use crate::bytecode::{Functions, Machine};
 use crate::flatten::BaseType;
 use crate::symbolic::{Environment, Expr, Substitution, VarId, evaluate};
 use std::cell::RefCell;
+
+/// Attributes of a variable for given values of the parameters; `None` where the model says nothing, or
+/// where there is no number.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Attributes {
+    /// `start`.
+    pub start: Option<f64>,
+    /// `min`.
+    pub min: Option<f64>,
+    /// `max`.
+    pub max: Option<f64>,
+    /// `nominal`.
+    pub nominal: Option<f64>,
+}
 
 impl DefaultValues {
     /// Of constants and parameters, these in order of dependence.
@@ -36,6 +50,28 @@ impl DefaultValues {
         let known = (0..dae.variables.len() as u32).map(VarId).map(|v| (v, self.get(v)));
         let values = known.map(|(v, value)| if value.is_nan() { start(v) } else { value });
         DefaultValues { values: values.collect() }
+    }
+
+    /// With the values that a system has for the parameters.
+    pub(crate) fn with_parameters(&self, dae: &Dae, value: impl Fn(usize) -> f64) -> DefaultValues {
+        let mut values = self.values.clone();
+        for (at, variable) in dae.variables.iter().enumerate() {
+            if matches!(variable.kind, VariableKind::Parameter { .. }) {
+                values[at] = value(at);
+            }
+        }
+        DefaultValues { values }
+    }
+
+    /// The attributes of a variable.
+    pub(crate) fn attributes(&self, dae: &Dae, variable: &Variable) -> Attributes {
+        let value = |e: Option<Expr>| e.map(|e| self.of(dae, e)).filter(|value| value.is_finite());
+        Attributes {
+            start: value(variable.start),
+            min: value(variable.min),
+            max: value(variable.max),
+            nominal: value(variable.nominal),
+        }
     }
 
     /// The value of an expression, NaN where it has none, or contains a variable without one.

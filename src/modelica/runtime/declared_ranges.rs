@@ -3,9 +3,7 @@
 use super::System;
 use crate::codegen::Access;
 use crate::flatten::BaseType;
-use crate::lower::VariableKind;
 use crate::source::Span;
-use crate::symbolic::{Expr, evaluate};
 
 /// The interval that a variable is declared with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,28 +22,23 @@ impl System {
     /// The intervals of all observed numbers that have one, with the parameters of this system.
     pub fn declared_ranges(&self) -> Vec<DeclaredRange> {
         let dae = &self.program.sorted.dae;
-        let mut values = dae.defaults.values().to_vec();
-        for (at, variable) in dae.variables.iter().enumerate() {
-            if matches!(variable.kind, VariableKind::Parameter { .. }) {
-                values[at] = self.registers[at];
-            }
-        }
-        let value = |attribute: Option<Expr>, otherwise| {
-            attribute.map_or(otherwise, |attribute| evaluate(&dae.pool, attribute, &values[..]))
-        };
+        let values = dae.defaults.with_parameters(dae, |at| self.registers[at]);
         let range = |(at, info): (usize, &crate::codegen::VariableInfo)| {
             let declared = dae.variable(info.variable);
             let is_number = matches!(info.base, BaseType::Real | BaseType::Integer);
             let is_limited = declared.min.is_some() || declared.max.is_some();
             let is_observed = matches!(info.access, Access::Observed { .. });
-            (is_number && is_limited && is_observed).then(|| DeclaredRange {
-                variable: at,
-                limits: [
-                    value(declared.min, f64::NEG_INFINITY),
-                    value(declared.max, f64::INFINITY),
-                ],
-                nominal: value(declared.nominal, 1.0).abs(),
-                span: declared.span,
+            (is_number && is_limited && is_observed).then(|| {
+                let attributes = values.attributes(dae, declared);
+                DeclaredRange {
+                    variable: at,
+                    limits: [
+                        attributes.min.unwrap_or(f64::NEG_INFINITY),
+                        attributes.max.unwrap_or(f64::INFINITY),
+                    ],
+                    nominal: attributes.nominal.unwrap_or(1.0).abs(),
+                    span: declared.span,
+                }
             })
         };
         self.program.variables().iter().enumerate().filter_map(range).collect()

@@ -4,15 +4,9 @@
 use super::translated::Translated;
 use crate::Session;
 use crate::codegen::Access;
-use crate::diag::Fault;
-use crate::lower::errors::OUTSIDE_RANGE;
+use crate::lower::{Beyond, OutsideRanges};
 use crate::runtime::System;
 use crate::sim::Trajectory;
-
-/// So many variables are shown with their declarations after a simulation; others are only named.
-const MOST_SHOWN: usize = 5;
-/// So many of these are named.
-const MOST_NAMED: usize = 10;
 
 /// Warns of each variable that was outside at a row, by more than the errors of the integration and of
 /// rounding: once for all elements of an array and all simulations.
@@ -26,7 +20,7 @@ pub(super) fn warn_outside(
     trajectory: &Trajectory,
     tolerance: f64,
 ) {
-    let (mut shown, mut others) = (0, Vec::new());
+    let mut found = OutsideRanges::default();
     for range in system.declared_ranges() {
         let variable = &model.program.variables()[range.variable];
         let Access::Observed { column, negated } = variable.access else { continue };
@@ -39,50 +33,23 @@ pub(super) fn warn_outside(
         let largest = values().fold(0.0, |largest: f64, value| largest.max(value.abs()));
         let slack = f64::max(tolerance * largest, f64::EPSILON * range.nominal);
         for outside in Outside::both(values, trajectory.time(), range.limits, slack) {
-            let what = format!("{} of {}", outside.attribute, without_subscripts(&variable.name));
-            if !session.models.is_new_warning(range.span, &what) {
-                continue;
+            let name = &variable.name;
+            if session.models.is_new_warning(range.span, &outside.beyond.subject(name)) {
+                let attribute = outside.beyond.attribute;
+                let help =
+                    format!("see whether the model holds there; else correct the `{attribute}`");
+                found.add(name, range.span, outside.sentence(name), help);
             }
-            shown += 1;
-            if shown > MOST_SHOWN {
-                others.push(format!("`{}`", variable.name));
-                continue;
-            }
-            let help = format!(
-                "see whether the model holds there; else correct the `{}`",
-                outside.attribute
-            );
-            let fault = Fault::new(OUTSIDE_RANGE, outside.sentence(&variable.name)).help(help);
-            session.report(fault.at(range.span).warning());
         }
     }
-    if !others.is_empty() {
-        let more = others.len().saturating_sub(MOST_NAMED);
-        others.truncate(MOST_NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let message = format!("also outside of `min` and `max`: {}{more}", others.join(", "));
-        session.report(Fault::new(OUTSIDE_RANGE, message).at(session.call_site()).warning());
-    }
-}
-
-/// The name that all elements of an array share.
-fn without_subscripts(name: &str) -> String {
-    let mut depth = 0;
-    let outside = |letter: &char| {
-        depth += i32::from(*letter == '[');
-        let is_outside = depth == 0;
-        depth -= i32::from(*letter == ']');
-        is_outside
-    };
-    name.chars().filter(outside).collect()
+    let call = session.call_site();
+    found.warnings(Some(call)).for_each(|warning| session.report(warning));
 }
 
 /// How a variable leaves its interval.
 #[derive(Debug, PartialEq)]
 struct Outside {
-    /// `min` or `max`.
-    attribute: &'static str,
-    limit: f64,
+    beyond: Beyond,
     /// When it is outside first.
     time: f64,
     /// The value farthest outside, and when it has it.
@@ -104,7 +71,7 @@ impl Outside {
                 if beyond(value) > beyond(one.0) { (value, *time) } else { one }
             };
             let farthest = rows.fold((value, *first), farther);
-            Some(Outside { attribute, limit, time: *first, farthest })
+            Some(Outside { beyond: Beyond { attribute, limit }, time: *first, farthest })
         };
         let below = side("min", min, &|value| min - value);
         let above = side("max", max, &|value| value - max);
@@ -112,14 +79,12 @@ impl Outside {
     }
 
     fn sentence(&self, name: &str) -> String {
-        let Outside { attribute, limit, time, farthest: (value, at) } = self;
-        let side = if *attribute == "min" { "below" } else { "above" };
+        let Outside { beyond, time, farthest: (value, at) } = self;
+        let beyond = beyond.words();
         if at == time {
-            return format!("`{name}` is {value} at t = {at}, {side} its `{attribute}` of {limit}");
+            return format!("`{name}` is {value} at t = {at}, {beyond}");
         }
-        format!(
-            "`{name}` is {side} its `{attribute}` of {limit} from t = {time}; it is {value} at t = {at}"
-        )
+        format!("`{name}` is {beyond} from t = {time}; it is {value} at t = {at}")
     }
 }
 
@@ -140,12 +105,6 @@ mod tests {
         let said = outside(&[1.0, 7.0, -3.0], [0.0, 4.0], 1e-6);
         let below = "`x` is -3 at t = 2, below its `min` of 0";
         assert_eq!(said, [below, "`x` is 7 at t = 1, above its `max` of 4"]);
-    }
-
-    #[test]
-    fn elements_share_the_name_of_their_array() {
-        assert_eq!(without_subscripts("a[1].b[2, 3].c"), "a.b.c");
-        assert_eq!(without_subscripts("a[n[1]].b"), "a.b");
     }
 
     #[test]

@@ -700,6 +700,39 @@ fn values_outside_of_declared_ranges_are_warned_of() {
     ] {
         assert_eq!(warnings(declarations), [expected], "{declarations}");
     }
+    // Each of two instances, each side, the value of a function; once for all elements of an array.
+    let tank = "model Tank parameter Real a(min = 0, max = b); parameter Real b = 5; end Tank;";
+    for (declarations, expected) in [
+        (
+            "Tank first(a = -1), second(a = -2), right(a = 3);",
+            &["`first.a` is -1, below its `min` of 0", "`second.a` is -2, below its `min` of 0"][..],
+        ),
+        (
+            "Tank row[3](a = {-1, 6, -2}, each b = 4);",
+            &["`row[1].a` is -1, below its `min` of 0", "`row[2].a` is 6, above its `max` of 4"],
+        ),
+        (
+            "Tank both(a = -1, b = -2);",
+            &["`both.a` is -1, below its `min` of 0", "`both.a` is -1, above its `max` of -2"],
+        ),
+        (
+            "function f input Real u; output Real y = u^2; end f; parameter Real p(min = f(3)) = 8;",
+            &["`p` is 8, below its `min` of 9"],
+        ),
+        (
+            "Tank a(a = 6), b(a = 7), c(a = 8), d(a = 9), e(a = 10), f(a = -1), g(a = 11);",
+            &[
+                "`a.a` is 6, above its `max` of 5",
+                "`b.a` is 7, above its `max` of 5",
+                "`c.a` is 8, above its `max` of 5",
+                "`d.a` is 9, above its `max` of 5",
+                "`e.a` is 10, above its `max` of 5",
+                "also outside of `min` and `max`: `f.a`, `g.a`",
+            ],
+        ),
+    ] {
+        assert_eq!(warnings(&format!("{tank} {declarations}")), expected, "{declarations}");
+    }
     let right = "parameter Real p(min = 0, max = 1) = 1; parameter Real q(min = 0) = p;
         Real x(start = -1, min = 0); type E = enumeration(a, b); parameter E e(max = E.b) = E.b;
         equation der(x) = 1;";
