@@ -262,6 +262,13 @@ impl Evaluator<'_> {
         match arguments.positional.as_slice() {
             [only] => {
                 let value = self.expression(only)?;
+                if let (Meaning::Reduction(reduction), Value::Array(array)) =
+                    (entry.meaning, &value)
+                    && array.elements.is_empty()
+                    && reduction.of_none().is_none()
+                {
+                    return Ok(self.reduced_nothing(reduction, only, &[]));
+                }
                 match entry.value(std::slice::from_ref(&value)) {
                     Err(fault) if self.host.overflows() => {
                         infinite(entry, &value).ok_or_else(|| fault.at(span))

@@ -1,12 +1,12 @@
 //! A function ready to be called: inheritance resolved, names absolute. Data only.
 
-use crate::functions::Builtin;
+use crate::functions::{Builtin, Reduction};
 use crate::inference::{DeclaredSizes, ElementType, Elementary};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
 use crate::syntax::visit::{Visit, walk_reference};
-use crate::value::EnumerationDefinition;
+use crate::value::{EnumerationDefinition, EnumerationValue, Value};
 use indexmap::IndexMap;
 use std::sync::Arc;
 
@@ -216,6 +216,24 @@ impl ValueType {
         match self {
             ValueType::Record(_, components) => Some(components.get(&name)?.value_type.clone()),
             _ => None,
+        }
+    }
+
+    /// What a reduction makes of no elements of this type (MLS §10.3.4.1): `min` the greatest value of
+    /// the type, `max` the least.
+    pub(crate) fn of_no_elements(&self, reduction: Reduction) -> Value {
+        if let Some(number) = reduction.of_none() {
+            return Value::Integer(number);
+        }
+        let is_min = reduction == Reduction::Min;
+        match self {
+            ValueType::Integer => Value::Integer(if is_min { i64::MAX } else { i64::MIN }),
+            ValueType::Boolean => Value::Boolean(is_min),
+            ValueType::Enumeration(definition) => Value::Enumeration(EnumerationValue {
+                ordinal: if is_min { definition.literals.len() as i64 } else { 1 },
+                definition: definition.clone(),
+            }),
+            _ => Value::Real(if is_min { f64::MAX } else { f64::MIN }),
         }
     }
 }

@@ -1,18 +1,17 @@
 //! Iterators: loops' ranges, array constructors with iterators `{e for i in r}` (MLS §10.4.1) and
 //! reductions `sum(e for i in r)` (MLS §10.3.4).
 
-use super::Evaluator;
 use super::errors::MISPLACED;
+use super::{Evaluator, ValueType};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
-use crate::functions::{self, Meaning};
-use crate::inference::subscript_uses;
+use crate::functions::{self, Meaning, Reduction};
+use crate::inference::{self, subscript_uses};
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{Expression, ExpressionKind, ForIndex, Statement};
 use crate::syntax::visit::Visit;
 use crate::value::construct::{self, Range};
-use crate::value::errors::DOMAIN_ERROR;
 use crate::value::{Value, element_count};
 
 /// What a loop repeats.
@@ -174,13 +173,23 @@ impl Evaluator<'_> {
             });
             Ok(())
         })?;
-        if let Some(total) = total {
-            return Ok(Some(total));
-        }
-        match reduction.of_none() {
-            Some(value) => Ok(Some(Value::Integer(value))),
-            None => Err(fault!(DOMAIN_ERROR, "`{name}` without elements has no value").at(span)),
-        }
+        Ok(Some(total.unwrap_or_else(|| self.reduced_nothing(reduction, element, indices))))
+    }
+
+    /// What a reduction makes of no values of an expression, those of iterators among its names: with
+    /// the type Real where its text does not show it.
+    pub(super) fn reduced_nothing(
+        &mut self,
+        reduction: Reduction,
+        element: &Expression,
+        indices: &[ForIndex],
+    ) -> Value {
+        let kind = ExpressionKind::ArrayIteration {
+            element: Box::new(element.clone()),
+            indices: indices.to_vec(),
+        };
+        let all = Expression::new(kind, element.span);
+        inference::type_of(self, &all).unwrap_or(ValueType::Real).of_no_elements(reduction)
     }
 
     fn reduce(

@@ -11,6 +11,7 @@ mod call;
 mod component;
 mod declaration;
 mod depth;
+mod element_types;
 mod endless_loop;
 pub mod errors;
 mod execution;

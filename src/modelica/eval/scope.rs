@@ -110,6 +110,14 @@ impl Scope {
         }
     }
 
+    /// The type that a variable is declared with; `None` for iterators and what an assignment made.
+    pub(super) fn declared_type(&self, name: Ident) -> Option<ValueType> {
+        if self.iterators.iter().any(|(iterator, _)| *iterator == name) {
+            return None;
+        }
+        Some(self.variables.get(&name)?.declared.as_ref()?.value_type.clone())
+    }
+
     /// Whether a variable of this name exists, with or without a value.
     pub fn contains(&self, name: Ident) -> bool {
         self.variables.contains_key(&name)

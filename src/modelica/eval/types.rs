@@ -6,7 +6,10 @@ use super::variable::{Declared, shadow_of};
 use crate::bail;
 use crate::diag::Fault;
 use crate::value::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
-use crate::value::{ArrayValue, Elements, EnumerationValue, RecordValue, Value, element_count};
+use crate::value::{
+    ArrayValue, Elements, EnumerationDefinition, EnumerationValue, RecordValue, Value,
+    element_count,
+};
 
 impl Declared {
     /// The value as the declared type holds it: Integers become Reals; another type or other sizes
@@ -119,7 +122,7 @@ impl ValueType {
             }
             // In the functions of loaded classes literals are ordinals.
             (ValueType::Enumeration(definition), Value::Integer(ordinal))
-                if (1..=definition.literals.len() as i64).contains(&ordinal) =>
+                if is_literal(ordinal, definition) =>
             {
                 let definition = definition.clone();
                 Ok(Value::Enumeration(EnumerationValue { definition, ordinal }))
@@ -151,6 +154,14 @@ impl ValueType {
                 if values.iter().all(|value| value.definition == *definition) =>
             {
                 Elements::Enumeration(values)
+            }
+            // In the functions of loaded classes literals are ordinals.
+            (ValueType::Enumeration(definition), Elements::Integer(ordinals))
+                if ordinals.iter().all(|ordinal| is_literal(*ordinal, definition)) =>
+            {
+                let literal =
+                    |ordinal| EnumerationValue { definition: definition.clone(), ordinal };
+                Elements::Enumeration(ordinals.into_iter().map(literal).collect())
             }
             (ValueType::Record(..), Elements::Record(records)) => Elements::Record(
                 records.into_iter().map(|r| self.convert_record(r)).collect::<Result<_, _>>()?,
@@ -204,4 +215,8 @@ impl ValueType {
         };
         Fault::new(TYPE_MISMATCH, message).help_if(help)
     }
+}
+
+fn is_literal(ordinal: i64, definition: &EnumerationDefinition) -> bool {
+    (1..=definition.literals.len() as i64).contains(&ordinal)
 }

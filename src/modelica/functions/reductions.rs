@@ -101,7 +101,9 @@ fn extreme(name: &str, arguments: &[Value], better: Ordering) -> Result<Value, F
     match arguments {
         [Value::Array(array)] => {
             let mut elements = (0..array.elements.len()).map(|at| array.elements.get(at));
-            let Some(first) = elements.next() else { return of_none(name, array, better) };
+            let Some(first) = elements.next() else {
+                return Err(fault!(DOMAIN_ERROR, "`{name}` of an empty array has no value"));
+            };
             elements.try_fold(first, |best, next| chosen(name, best, next, better))
         }
         [a, b] => {
@@ -110,17 +112,6 @@ fn extreme(name: &str, arguments: &[Value], better: Ordering) -> Result<Value, F
             Ok(if is_real { both.promoted() } else { both })
         }
         _ => Err(fault!(TYPE_MISMATCH, "`{name}` takes two scalars or one array")),
-    }
-}
-
-/// The least value of the type for `max`, the greatest for `min` (MLS §10.3.4.1).
-fn of_none(name: &str, array: &ArrayValue, better: Ordering) -> Result<Value, Fault> {
-    let is_min = better == Ordering::Less;
-    match &array.elements {
-        Elements::Real(_) => Ok(Value::Real(if is_min { f64::MAX } else { f64::MIN })),
-        Elements::Integer(_) => Ok(Value::Integer(if is_min { i64::MAX } else { i64::MIN })),
-        Elements::Boolean(_) => Ok(Value::Boolean(is_min)),
-        _ => Err(fault!(DOMAIN_ERROR, "`{name}` of an empty array has no value")),
     }
 }
 

@@ -32,6 +32,7 @@ mod long_expressions;
 mod mistakes;
 mod random_functions;
 mod record_arrays;
+mod reductions_of_nothing;
 mod run_time_strings;
 mod shipped_functions;
 mod state_machines;

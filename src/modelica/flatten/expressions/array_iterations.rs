@@ -204,6 +204,10 @@ impl Instantiation<'_> {
             let range = match &index.range {
                 Some(range) => {
                     named = self.classes.type_of_range(range, context, &inner)?;
+                    if named.is_none() {
+                        let literals = self.enumeration_of_range(range, context, &inner)?;
+                        named = literals.map(ValueType::Enumeration);
+                    }
                     match self.classes.type_range(range, context, &inner)? {
                         Some(values) => Some(values),
                         None => Some(self.resolve(range, context, &inner)?),

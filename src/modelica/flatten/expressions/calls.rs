@@ -75,7 +75,7 @@ impl Instantiation<'_> {
         }
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
-        Ok(Expression::new(kind, span))
+        self.bounded_by_literals(Expression::new(kind, span), written, context, local)
     }
 
     /// Whether it is the name of a function of the language with a dot before it, `.ones`, as

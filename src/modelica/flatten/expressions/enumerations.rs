@@ -170,6 +170,57 @@ impl Instantiation<'_> {
         }
     }
 
+    /// The enumeration of a range that one of its literals is written in: `E.a:E.b`, `E.a:e`.
+    pub(crate) fn enumeration_of_range(
+        &mut self,
+        range: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Arc<EnumerationDefinition>>, Diagnostic> {
+        let ExpressionKind::Range { start, step: None, stop } = &range.kind else {
+            return Ok(None);
+        };
+        match self.enumeration_of(start, context, local)? {
+            None => self.enumeration_of(stop, context, local),
+            found => Ok(found),
+        }
+    }
+
+    /// `min` and `max` of the values of an iterator over literals, `min(e for e in E.a:E.b)`, with the
+    /// literal that they have where there are none (MLS §10.3.4.1): the literals have become
+    /// Integers, whose extremes are others.
+    pub(crate) fn bounded_by_literals(
+        &mut self,
+        reduction: Expression,
+        written: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &reduction.kind else {
+            return Ok(reduction);
+        };
+        let (Some(name), [_, ..], [element]) = (
+            function.as_ident().filter(|name| *name == "min" || *name == "max"),
+            &written.iterators[..],
+            &arguments.positional[..],
+        ) else {
+            return Ok(reduction);
+        };
+        let outer_first: Vec<_> = written.iterators.iter().rev().cloned().collect();
+        let (_, inner) = self.iterators(&outer_first, context, local)?;
+        let types = self.types();
+        let Some(ValueType::Enumeration(definition)) = types.value_type_of(element, &inner) else {
+            return Ok(reduction);
+        };
+        if types.value_type_of(&reduction, local) != Some(ValueType::Integer) {
+            return Ok(reduction);
+        }
+        let bound = if name == "min" { definition.literals.len() as i64 } else { 1 };
+        let span = reduction.span;
+        let bound = Expression::new(ExpressionKind::Integer(bound), span);
+        Ok(call(&Name::from(name), vec![reduction, bound], span))
+    }
+
     /// The name of a literal, or of a value of an enumeration.
     fn literal_name(
         &mut self,

@@ -8,13 +8,13 @@ use crate::flatten::errors::{
 };
 use crate::flatten::expressions::array_iterations::is_sum_of_nothing;
 use crate::flatten::expressions::local::Local;
-use crate::flatten::flat_expression::subscripted;
+use crate::flatten::flat_expression::{call, subscripted};
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::unknown;
 use crate::inference::is_arithmetic;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
@@ -80,7 +80,7 @@ impl Instantiation<'_> {
             ExpressionKind::Range { start, step: None, stop }
                 if is_boolean(start) && is_boolean(stop) =>
             {
-                ExpressionKind::Array(booleans(start, stop))
+                return Ok(booleans(start, stop));
             }
             ExpressionKind::Range { start, step, stop } => ExpressionKind::Range {
                 start: Box::new(sub(self, start)?),
@@ -425,13 +425,19 @@ fn is_boolean(e: &Expression) -> bool {
     matches!(e.kind, ExpressionKind::Boolean(_))
 }
 
-/// The literals of a range of Booleans (MLS §10.4.3).
-fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
+/// The literals of a range of Booleans (MLS §10.4.3); none of them show their type as `fill(false, 0)`.
+fn booleans(start: &Expression, stop: &Expression) -> Expression {
     let is_in = |truth: &bool| {
         let below = matches!(start.kind, ExpressionKind::Boolean(true)) && !*truth;
         let above = matches!(stop.kind, ExpressionKind::Boolean(false)) && *truth;
         !below && !above
     };
-    let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));
-    [false, true].into_iter().filter(is_in).map(literal).collect()
+    let span = start.span.to(stop.span);
+    let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
+    let all: Vec<Expression> = [false, true].into_iter().filter(is_in).map(literal).collect();
+    if all.is_empty() {
+        let none = Expression::new(ExpressionKind::Integer(0), span);
+        return call(&Name::from(Ident::new("fill")), vec![literal(false), none], span);
+    }
+    Expression::new(ExpressionKind::Array(all), span)
 }

@@ -18,6 +18,7 @@ use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{self, FunctionId};
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use crate::value::Value;
 
 impl<T: Target> Lowering<'_, T> {
     /// A call of the function of the language that has this name.
@@ -350,10 +351,10 @@ impl<T: Target> Lowering<'_, T> {
         if iterators.is_empty() {
             let elements = self.array(element)?.elements;
             let is_integer = elements.len() != 1 && self.is_integer(name, arguments, span);
-            return self.reduced(reduction, element, &elements, is_integer, span);
+            return self.reduced(reduction, arguments, &elements, is_integer, span);
         }
         let is_integer = self.is_integer(name, arguments, span);
-        let counted = self.counted_reduction(reduction, element, iterators, is_integer, span)?;
+        let counted = self.counted_reduction(reduction, element, arguments, is_integer, span)?;
         if let Some(value) = counted {
             return Ok(Array::scalar(value));
         }
@@ -364,7 +365,7 @@ impl<T: Target> Lowering<'_, T> {
         }
         let elements: Vec<T::Scalar> = all.into_iter().flat_map(|one| one.elements).collect();
         match (dims.is_empty(), reduction) {
-            (true, _) => self.reduced(reduction, element, &elements, is_integer, span),
+            (true, _) => self.reduced(reduction, arguments, &elements, is_integer, span),
             (false, Reduction::Sum) => self.sum_of_arrays(dims, &elements, is_integer, span),
             (false, _) => {
                 let fault = fault!(
@@ -380,7 +381,7 @@ impl<T: Target> Lowering<'_, T> {
     fn reduced(
         &mut self,
         reduction: Reduction,
-        element: &Expression,
+        arguments: &Arguments,
         elements: &[T::Scalar],
         is_integer: bool,
         span: Span,
@@ -396,7 +397,7 @@ impl<T: Target> Lowering<'_, T> {
         let (Some((first, rest)), Some(id)) =
             (elements.split_first(), function::find(reduction.name()))
         else {
-            let none = self.of_none(reduction, element, is_integer);
+            let none = self.of_none(reduction, arguments, span);
             return Ok(Array::scalar(self.target.constant(none)));
         };
         let mut result = *first;
@@ -406,23 +407,20 @@ impl<T: Target> Lowering<'_, T> {
         Ok(Array::scalar(result))
     }
 
-    /// What a reduction makes of no elements: `min` the greatest value, `max` the least one
-    /// (MLS §10.3.4.1), as the interpreter has them.
+    /// What a reduction makes of no elements, as the interpreter has it.
     pub(super) fn of_none(
         &mut self,
         reduction: Reduction,
-        element: &Expression,
-        is_integer: bool,
+        arguments: &Arguments,
+        span: Span,
     ) -> f64 {
-        if let Some(value) = reduction.of_none() {
-            return value as f64;
+        match self.type_of_call(reduction.name(), arguments, span).of_no_elements(reduction) {
+            Value::Real(number) => number,
+            Value::Integer(number) => number as f64,
+            Value::Boolean(truth) => f64::from(truth),
+            Value::Enumeration(literal) => literal.ordinal as f64,
+            _ => f64::NAN,
         }
-        let [greatest, least] = match self.type_of(element) {
-            _ if is_integer => [i64::MAX as f64, i64::MIN as f64],
-            ValueType::Boolean => [1.0, 0.0],
-            _ => [f64::MAX, f64::MIN],
-        };
-        if reduction == Reduction::Min { greatest } else { least }
     }
 
     fn are_integers(&mut self, values: &[Expression]) -> bool {
@@ -431,10 +429,13 @@ impl<T: Target> Lowering<'_, T> {
 
     /// Whether the value of a built-in function is an Integer.
     fn is_integer(&mut self, name: &str, arguments: &Arguments, span: Span) -> bool {
+        self.type_of_call(name, arguments, span) == ValueType::Integer
+    }
+
+    fn type_of_call(&mut self, name: &str, arguments: &Arguments, span: Span) -> ValueType {
         let function = ComponentReference::from_name(&Name::parse(name), span);
         let arguments = Box::new(arguments.clone());
-        let call = Expression::new(ExpressionKind::Call { function, arguments }, span);
-        self.type_of(&call) == ValueType::Integer
+        self.type_of(&Expression::new(ExpressionKind::Call { function, arguments }, span))
     }
 
     /// The sum of arrays of these sizes, which follow one another (MLS §10.3.4.1).

@@ -10,7 +10,7 @@ use crate::lower::errors::NO_CONSTANT_VALUE;
 use crate::lower::loops::LoopVariable;
 use crate::source::Span;
 use crate::symbolic::function;
-use crate::syntax::ast::{Expression, ExpressionKind, ForIndex};
+use crate::syntax::ast::{Arguments, Expression, ExpressionKind, ForIndex};
 
 /// A reduction being computed.
 struct Counted<'e> {
@@ -28,14 +28,15 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         reduction: Reduction,
         element: &Expression,
-        iterators: &[ForIndex],
+        arguments: &Arguments,
         is_integer: bool,
         span: Span,
     ) -> Result<Option<T::Scalar>, Diagnostic> {
+        let iterators = arguments.iterators.as_slice();
         if !self.target.runs_loops() || !self.has_computed_range(iterators)? {
             return Ok(None);
         }
-        let none = self.of_none(reduction, element, is_integer);
+        let none = self.of_none(reduction, arguments, span);
         let none = self.target.constant(none);
         let counted = Counted { reduction, element, is_integer, span };
         self.counted(&counted, iterators, none).map(Some)
