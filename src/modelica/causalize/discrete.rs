@@ -5,9 +5,12 @@ use super::causalized::Alias;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
+use crate::flatten::errors::TYPE_MISMATCH;
 use crate::graph::{Bipartite, match_equations};
-use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
-use crate::lower::{Dae, Equation, Variable, VariableKind, is_real, used_variables};
+use crate::lower::errors::UNBALANCED_MODEL;
+use crate::lower::{
+    Dae, Equation, Variable, VariableKind, WITHOUT_EVENTS, is_real, not_discrete, used_variables,
+};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
 
@@ -47,10 +50,7 @@ pub(super) fn separate_discrete(
         .collect();
     let matching = match_equations(&Bipartite::new(open.len(), rows));
     if let Some(missing) = matching.unknown_to_equation.iter().position(Option::is_none) {
-        let variable = dae.variable(open[missing]);
-        return Err(fault!(UNBALANCED_MODEL, "no equation determines the discrete `{}`",
-            variable.name; help: "write an equation `{} = …` for it", variable.name)
-        .labelled(variable.span, "no equation determines this"));
+        return Err(undetermined(dae, open[missing]));
     }
     let mut determining: Vec<(VarId, Equation)> = Vec::new();
     for (equation, unknown) in
@@ -67,6 +67,41 @@ pub(super) fn separate_discrete(
     leave_varying(dae, aliases, &mut determining)?;
     dae.events.equations.extend(determining.into_iter().map(|(_, equation)| equation));
     Ok(())
+}
+
+/// Why a discrete variable has no equation: the one that is written for it has a Real, which is known
+/// without it, or there is none.
+fn undetermined(dae: &Dae, variable: VarId) -> Diagnostic {
+    let Variable { name, span, base, .. } = dae.variable(variable);
+    let real_of = |equation: &Equation| {
+        let sides = [(equation.left, equation.right), (equation.right, equation.left)];
+        let found = sides.into_iter().find(|(own, _)| dae.pool.as_variable(*own) == Some(variable));
+        found.map(|(_, other)| other).filter(|other| is_real(dae, *other))
+    };
+    let has_unknowns = |e: Expr| dae.pool.any_variable(e, |v| dae.is_unknown(v));
+    let mut help = format!("write an equation `{name} = …` for it");
+    for equation in dae.equations.iter().filter(|_| *base == BaseType::Integer) {
+        match real_of(equation) {
+            Some(value) if !has_unknowns(value) => {
+                return fault!(
+                    TYPE_MISMATCH,
+                    "`{name}` is an Integer, but the value of its equation is a Real";
+                    help: "round it with `integer(x)`, or declare `{name}` as Real"
+                )
+                .at(equation.span);
+            }
+            // It may determine one of these.
+            Some(value) if dae.pool.as_variable(value).is_none() => {
+                help = format!(
+                    "an equation with a Real does not determine the Integer `{name}`: round it \
+                     with `integer(x)`"
+                );
+            }
+            _ => {}
+        }
+    }
+    fault!(UNBALANCED_MODEL, "no equation determines the discrete `{name}`"; help: "{help}")
+        .labelled(*span, "no equation determines this")
 }
 
 /// Leaves to the continuous equations what follows from Integers that change between events: the
@@ -119,10 +154,8 @@ fn may_vary(dae: &Dae, aliases: &[Option<Alias>], (variable, equation): (VarId, 
 }
 
 fn not_constant(dae: &Dae, variable: VarId, equation: Equation) -> Diagnostic {
-    fault!(NOT_DISCRETE,
-        "`{}` is discrete, but its equation may change between events",
-        dae.variable(variable).name;
-        help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
-               `noEvent` or inside functions")
-    .at(equation.span)
+    let subject = format!("`{}` is discrete, but its value", dae.variable(variable).name);
+    not_discrete(dae, &subject, equation.right, |v| is_varying(dae, v))
+        .help(WITHOUT_EVENTS)
+        .at(equation.span)
 }

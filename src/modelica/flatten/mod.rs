@@ -59,7 +59,7 @@ use crate::syntax::ast::{
     self, Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind,
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
-use errors::{INVALID_CONNECTION, NOT_A_MODEL, TOO_LARGE};
+use errors::{INVALID_CONNECTION, NOT_A_MODEL, TOO_LARGE, UNKNOWN_CLASS, UNKNOWN_NAME};
 use lookup::modification::Modifier;
 use std::collections::BTreeSet;
 
@@ -97,8 +97,25 @@ pub fn flatten_unbalanced(
     class: &Name,
     modification: &[Argument],
 ) -> Result<(Flattened, Option<Diagnostic>), Vec<Diagnostic>> {
-    on_deep_stack(|| flattened(library, class, modification))
-        .unwrap_or_else(|error| Err(vec![error]))
+    on_deep_stack(|| {
+        flattened(library, class, modification)
+            .map_err(|errors| after_missing_imports(library, class, errors))
+    })
+    .unwrap_or_else(|error| Err(vec![error]))
+}
+
+/// Errors by names that mean nothing, after the imports of what does not exist, which may be why.
+fn after_missing_imports(
+    library: &Library,
+    class: &Name,
+    errors: Vec<Diagnostic>,
+) -> Vec<Diagnostic> {
+    if !errors.iter().any(|error| [UNKNOWN_CLASS, UNKNOWN_NAME].contains(&error.code)) {
+        return errors;
+    }
+    let mut all = library.find(class).map_or(Vec::new(), |id| checks::missing_imports(library, id));
+    all.extend(errors);
+    distinct(all)
 }
 
 /// Where there are no threads (browsers), the stack is the one that the program was linked with.

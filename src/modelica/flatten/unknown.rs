@@ -16,6 +16,20 @@ pub(crate) fn class(name: &Name, suggestion: Option<String>, span: Span) -> Diag
     fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(help).at(span)
 }
 
+/// A class that is imported and that nothing declares: its name is a full name (MLS §13.2.1), `full` the
+/// one of the class that it would mean in the scope of the import.
+pub(crate) fn import(
+    name: &Name,
+    full: Option<Name>,
+    suggestion: Option<String>,
+    span: Span,
+) -> Diagnostic {
+    let full = full.map(|full| {
+        format!("the name that an import gives starts at the top level: write `import {full}`")
+    });
+    fault!(UNKNOWN_CLASS, "there is no `{name}` to import").help_if(full.or(suggestion)).at(span)
+}
+
 /// A function that neither a class nor the language declares; without a suggestion one of the language.
 /// `known` are the components that the name could mean.
 pub(crate) fn function(

@@ -8,11 +8,10 @@ use super::assigned_variables::AssignedScalar;
 use super::builder::Builder;
 use super::calls_of_statements::assigned_outputs;
 use super::dae::VariableKind;
+use super::discrete::WITHOUT_EVENTS;
 use super::equation::Equation;
-use super::errors::{
-    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_DISCRETE, NOT_SUPPORTED, UNBALANCED_MODEL,
-};
-use super::execution::Loops;
+use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNBALANCED_MODEL};
+use super::execution::{Loops, Written};
 use super::expressions::{Lowered, Lowering};
 use super::function::Before;
 use super::shape::UNKNOWN_TEXT;
@@ -27,6 +26,10 @@ use crate::symbolic::{Expr, Pool, VarId};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
+
+/// What to do where a loop of an algorithm, which causes no events, decides on a discrete value.
+const LOOP_WITHOUT_EVENTS: &str = "how often this loop runs causes no events: assign the variable in a \
+    when-clause, or declare it `Real`";
 
 impl Builder<'_> {
     /// Adds the equations of an algorithm section.
@@ -50,7 +53,8 @@ impl Builder<'_> {
                 (false, false) => self.dae.equations.push(equation),
                 (false, true) => {
                     let in_when = execution.in_when.contains(&variable);
-                    self.discrete_assignment(variable, equation, in_when)?;
+                    let written = execution.written.get(&variable).copied();
+                    self.discrete_assignment(variable, equation, in_when, written)?;
                 }
             }
         }
@@ -77,6 +81,7 @@ impl Builder<'_> {
         variable: VarId,
         equation: Equation,
         in_when: bool,
+        written: Option<Written>,
     ) -> Result<(), Diagnostic> {
         let name = self.dae.variable(variable).name.clone();
         if !self.execution.assigned.insert(variable) {
@@ -84,13 +89,14 @@ impl Builder<'_> {
                 help: "assign it in one algorithm or one when-clause")
             .at(equation.span));
         }
-        if !in_when && self.dae.varies(equation.right) && self.varies_between_events(equation.right)
-        {
-            return Err(fault!(NOT_DISCRETE,
-                "`{name}` is discrete, but its value can change between events";
-                help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
-               `noEvent` or inside functions")
-            .at(equation.span));
+        let subject = format!("`{name}` is discrete, but its value");
+        if !in_when && let Some(fault) = self.changes_between_events(&subject, equation.right) {
+            let (help, place) = match written {
+                Some(Written::Loop(condition)) => (LOOP_WITHOUT_EVENTS, condition),
+                Some(Written::Assignment(place)) => (WITHOUT_EVENTS, place),
+                None => (WITHOUT_EVENTS, equation.span),
+            };
+            return Err(fault.help(help).at(place));
         }
         self.dae.events.equations.push(equation);
         Ok(())
@@ -330,6 +336,7 @@ impl<'b> Algorithm<'_, 'b> {
                 None => values[element],
                 Some(guard) => builder.dae.pool.if_then_else(guard, values[element], *before),
             };
+            builder.execution.assigned_by(variable, Written::Assignment(target.span));
             if builder.place.in_when {
                 builder.execution.in_when.insert(variable);
             }

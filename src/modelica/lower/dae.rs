@@ -218,17 +218,19 @@ impl Dae {
 
     /// Whether an expression may vary between events.
     pub(super) fn varies(&self, a: Expr) -> bool {
-        let varies = |v: VarId| {
-            matches!(
-                self.variable(v).kind,
-                VariableKind::Time
-                    | VariableKind::Unknown
-                    | VariableKind::Derivative(_)
-                    | VariableKind::Delayed
-                    | VariableKind::Text
-            )
-        };
-        self.pool.any_variable(a, varies)
+        self.pool.any_variable(a, |v| self.is_varying(v))
+    }
+
+    /// Whether a variable changes between events.
+    pub(super) fn is_varying(&self, v: VarId) -> bool {
+        matches!(
+            self.variable(v).kind,
+            VariableKind::Time
+                | VariableKind::Unknown
+                | VariableKind::Derivative(_)
+                | VariableKind::Delayed
+                | VariableKind::Text
+        )
     }
 
     /// Assertions in a branch hold only where it is taken, and are looked at only there.

@@ -1,10 +1,33 @@
 //! Which Reals are discrete: those that a when-clause assigns (MLS §3.8.4, §4.5).
 
 use super::builder::Builder;
+use super::dae::Dae;
 use super::dae::VariableKind;
+use super::errors::NOT_DISCRETE;
 use super::expressions::Lowering;
-use crate::symbolic::VarId;
+use crate::diag::Fault;
+use crate::fault;
+use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{self, ComponentReference, EquationKind, ExpressionKind, StatementKind};
+
+/// Why a value that has to be discrete is not: one of the variables that it follows from changes
+/// between events.
+pub(crate) fn not_discrete(
+    dae: &Dae,
+    subject: &str,
+    value: Expr,
+    is_varying: impl Fn(VarId) -> bool,
+) -> Fault {
+    let mut read = dae.pool.variables(value).into_iter().filter(|v| is_varying(*v));
+    let named = read.find(|v| !dae.variable(*v).name.starts_with('$'));
+    let cause =
+        named.map_or_else(String::new, |v| format!(": it follows from `{}`", dae.variable(v).name));
+    fault!(NOT_DISCRETE, "{subject} can change between events{cause}")
+}
+
+/// What to do where relations cause no events.
+pub(crate) const WITHOUT_EVENTS: &str = "`==` and `<>` of Reals are no events: write `<=` or `>=`; do \
+    not use relations inside `noEvent` or inside functions";
 
 impl Builder<'_> {
     /// Marks the Reals that when-clauses assign.

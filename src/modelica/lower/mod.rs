@@ -54,6 +54,7 @@ pub(crate) use build::{derivative_of, scalar_of_nothing};
 pub use dae::*;
 pub use default_values::Attributes;
 pub(crate) use default_values::fold_parameters;
+pub(crate) use discrete::{WITHOUT_EVENTS, not_discrete};
 pub use equation::*;
 pub use events::*;
 pub use function::CompiledFunctions;

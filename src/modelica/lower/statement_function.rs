@@ -4,7 +4,7 @@
 
 use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::execution::Loops;
+use super::execution::{Loops, Written};
 use super::expressions::{Array, Lowered, Lowering, VariableReferences};
 use super::function::{call_of_any_size, interpreted_call};
 use super::loops::LoopVariable;
@@ -88,7 +88,7 @@ impl Builder<'_> {
         let results = self.called_in_any_way(&function, arguments, s.span)?;
         let paths = known.iter().filter(|(_, name)| assigned.contains(*name));
         for ((read, _), result) in paths.zip(results) {
-            self.assign_results(&read.path, &result);
+            self.assign_results(&read.path, &result, written_in(s));
         }
         Ok(())
     }
@@ -152,7 +152,7 @@ impl Builder<'_> {
     }
 
     /// Gives the elements of a variable that the algorithm assigns their values.
-    fn assign_results(&mut self, path: &str, result: &Lowered<Expr>) {
+    fn assign_results(&mut self, path: &str, result: &Lowered<Expr>, written: Written) {
         let mut values = Vec::new();
         result.append_scalars(&mut values);
         let Some(position) = self.flat.variables.get_index_of(path) else { return };
@@ -160,11 +160,23 @@ impl Builder<'_> {
         for (variable, value) in (first..).map(VarId).zip(values) {
             if let Some(before) = self.execution.values.get_mut(&variable) {
                 *before = value;
+                self.execution.assigned_by(variable, written);
                 if self.place.in_when {
                     self.execution.in_when.insert(variable);
                 }
             }
         }
+    }
+}
+
+/// Where a statement assigns its results, as messages show it: of a loop its head.
+fn written_in(s: &Statement) -> Written {
+    match &s.kind {
+        StatementKind::While { condition, .. } => Written::Loop(condition.span),
+        StatementKind::For { indices, .. } => {
+            Written::Loop(indices.first().map_or(s.span, |index| index.name.span))
+        }
+        _ => Written::Assignment(s.span),
     }
 }
 

@@ -3,11 +3,12 @@
 use super::build::scalar_of_nothing;
 use super::builder::Builder;
 use super::dae::{Variable, VariableKind};
+use super::discrete::{WITHOUT_EVENTS, not_discrete};
 use super::equation::{Assertion, Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_DISCRETE, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
 use super::expressions::{Array, Operations, StringPart, size_fault};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::functions::{Builtin, Temporal};
@@ -169,11 +170,8 @@ impl Builder<'_> {
             return Ok(self.dae.pool.variable(*variable));
         }
         // Relations in when-clauses before it are evaluated at their events alone.
-        if self.dae.varies(b) && self.varies_between_events(b) {
-            return Err(fault!(NOT_DISCRETE, "this condition can change between events";
-                help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
-               `noEvent` or inside functions")
-            .at(span));
+        if let Some(fault) = self.changes_between_events("this condition", b) {
+            return Err(fault.help(WITHOUT_EVENTS).at(span));
         }
         let name = format!("$condition[{}]", self.scalars.conditions.len() + 1);
         let mut variable = scalar_of_nothing(&name, VariableKind::Discrete, span);
@@ -186,8 +184,12 @@ impl Builder<'_> {
         Ok(left)
     }
 
-    /// Whether an expression varies even where no when-clause acts: between events `pre(v)` is `v`.
-    pub(super) fn varies_between_events(&mut self, e: Expr) -> bool {
+    /// What is wrong with a discrete value that varies even where no when-clause acts: between events
+    /// `pre(v)` is `v`.
+    pub(super) fn changes_between_events(&mut self, subject: &str, e: Expr) -> Option<Fault> {
+        if !self.dae.varies(e) {
+            return None;
+        }
         let initial = self.initial_signal();
         let initial = self.dae.pool.as_variable(initial);
         let zero = self.dae.pool.constant(0.0);
@@ -197,7 +199,8 @@ impl Builder<'_> {
         }
         now.extend(initial.map(|variable| (variable, zero)));
         let between = substitute(&mut self.dae.pool, e, &|v| now.get(&v).copied());
-        self.dae.varies(between)
+        let dae = &self.dae;
+        dae.varies(between).then(|| not_discrete(dae, subject, between, |v| dae.is_varying(v)))
     }
 
     /// 1 during initialization.

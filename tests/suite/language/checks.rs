@@ -676,6 +676,16 @@ fn continuous_variables_have_no_value_before_outside_of_when_clauses() {
     let run = simulated(&model(right), 1.0);
     let values = [run.last("d"), run.last("z"), run.last("w"), run.last("n")];
     crate::support::simulated::all_near(&values, &[3.5, 3.5, 2.5, 1.0], 1e-6);
+    // An input that is declared discrete holds its samples (MLS §3.8.4); another one need not.
+    let block = |prefix: &str| format!("block B {prefix} input Real u; Real y = pre(u); end B;");
+    let text = format!(
+        "model M {} discrete Real d(start = 0, fixed = true); B b(u = d); equation
+         when time > 0.5 then d = pre(d) + 2; end when; end M;",
+        block("discrete")
+    );
+    crate::support::simulated::all_near(&[simulated(&text, 1.0).last("b.y")], &[2.0], 1e-12);
+    assert!(crate::support::simulated::compiled(&block("discrete")).is_ok());
+    assert!(said(&block("")).starts_with("not-discrete"));
 }
 
 /// What is known at translation is compared with `min` and `max` (MLS §4.9).

@@ -424,7 +424,22 @@ fn an_initial_system_that_does_not_fit_is_reported_by_name() {
 #[test]
 fn what_hybrid_models_may_not_do_is_refused_with_a_reason() {
     for (body, reason) in [
-        ("Boolean b = noEvent(x > 1);", "may change between events"),
+        ("Boolean b = noEvent(x > 1);", "can change between events: it follows from `x`"),
+        (
+            "Integer n; equation n = 1.5;",
+            "`n` is an Integer, but the value of its equation is a Real",
+        ),
+        (
+            "Integer n; equation 2*time = n;",
+            "`n` is an Integer, but the value of its equation is a",
+        ),
+        ("Integer n; equation n = x + time;", "does not determine the Integer `n`: round it"),
+        ("Integer n; Real y; equation y = n; x = y;", "write an equation `n = …` for it"),
+        (
+            "Integer k; Real y; algorithm k := 0; y := x;
+             while y > 0.25 loop k := k + 1; y := y - 0.25; end while;",
+            "can change between events: it follows from `x`; how often this loop runs",
+        ),
         (
             "discrete Real d; Real free; equation when x > 1 then d = 1; end when; when x > 2 then d = 2; end when;",
             "assigned by two when-clauses",

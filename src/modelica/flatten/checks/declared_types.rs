@@ -67,7 +67,7 @@ impl CheckedType {
             (CheckedType::Boolean, CheckedType::Real | CheckedType::Integer) => {
                 Some("compare it, as in `x > 0`")
             }
-            (CheckedType::String, CheckedType::Real | CheckedType::Integer) => {
+            (CheckedType::String, found) if !matches!(found, CheckedType::Record(_)) => {
                 Some("write `String(x)`")
             }
             _ => None,

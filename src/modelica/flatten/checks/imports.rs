@@ -1,10 +1,13 @@
 //! Import clauses (MLS §13.2).
 
 use super::scope::Scope;
+use super::unknown::is_certain;
 use super::visible_elements::{self, element};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_IMPORT;
+use crate::flatten::library::Library;
+use crate::flatten::unknown;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{Element, Import, ImportKind, Restriction, Visibility};
@@ -31,6 +34,47 @@ pub(crate) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
                 );
             }
         }
+    }
+}
+
+/// What an import names that does not exist, and the part of the name that is not found. What a library
+/// that is read in parts may have is left out.
+pub(crate) fn missing(library: &Library, import: &ImportKind) -> Vec<(Name, usize)> {
+    let targets: Vec<Name> = match import {
+        ImportKind::Qualified(name)
+        | ImportKind::Renaming(_, name)
+        | ImportKind::Unqualified(name) => vec![name.clone()],
+        ImportKind::Group(package, names) => {
+            names.iter().map(|name| package.child(*name)).collect()
+        }
+    };
+    let not_found = |target: Name| {
+        let parts = library.parts_of_reference(None, &target);
+        let at = parts.iter().position(Option::is_none)?;
+        is_certain(library, &parts[..at]).then_some((target, at))
+    };
+    targets.into_iter().filter_map(not_found).collect()
+}
+
+/// The diagnostic for one of them in a class.
+pub(crate) fn unknown(class: Scope<'_>, target: &Name, span: Span) -> Diagnostic {
+    let relative = Name { global: false, parts: target.parts.clone() };
+    let full = || {
+        let package = class.class_named(&relative.parent())?;
+        let name = target.last().filter(|name| element(package, *name).is_some())?;
+        Some(package.name().child(name))
+    };
+    unknown::import(target, full(), class.library.suggestion(None, target), span)
+}
+
+/// Warns of imports of what does not exist: a model that does not use them can be simulated.
+pub(crate) fn warn_of_missing(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    for (_, element) in class.elements() {
+        let Element::Import(import) = element else { continue };
+        let missing = missing(class.library, &import.kind);
+        errors.extend(
+            missing.iter().map(|(target, _)| unknown(class, target, import.span).warning()),
+        );
     }
 }
 

@@ -45,6 +45,15 @@ pub(crate) fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     judged(library, errors)
 }
 
+/// The imports of what does not exist, in a class and those that take part in it.
+pub(crate) fn missing_imports(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+    let mut warnings = Vec::new();
+    for class in participants::of(Scope { library, class }) {
+        imports::warn_of_missing(class, &mut warnings);
+    }
+    warnings
+}
+
 /// What is wrong with one class, whatever takes part in it, names that mean nothing included.
 pub(crate) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
@@ -65,6 +74,7 @@ fn judged(library: &Library, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
 
 fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     check_rules(class, errors);
+    imports::warn_of_missing(class, errors);
     types::check(class, errors);
 }
 

@@ -249,11 +249,32 @@ impl TypeCheck<'_, '_> {
         }
     }
 
-    /// Arithmetic is defined for numbers (MLS §10.6), the sum of strings aside.
+    /// Arithmetic is defined for numbers (MLS §10.6), and `+` for two Strings.
     fn operands(&mut self, operator: BinaryOperator, operands: [Typed<'_>; 2]) {
-        if inference::is_arithmetic(operator) {
-            operands.into_iter().for_each(|operand| self.term(operand));
+        if !inference::is_arithmetic(operator) {
+            return;
         }
+        let is_string = |(_, found): &Typed<'_>| *found == Some(CheckedType::String);
+        let is_sum = matches!(operator, BinaryOperator::Add | BinaryOperator::ElementwiseAdd);
+        match operands.iter().find(|one| is_string(one)) {
+            None => operands.into_iter().for_each(|operand| self.term(operand)),
+            Some(_) if is_sum => self.joined(operands.into_iter().find(|one| !is_string(one))),
+            // What is not known may be a record with operators.
+            Some((string, _)) if operands.iter().all(|(_, found)| found.is_some()) => {
+                self.mismatch(string, "arithmetic needs numbers", CheckedType::String);
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// What a String is joined with.
+    fn joined(&mut self, other: Option<Typed<'_>>) {
+        let Some((other, Some(found))) = other else { return };
+        self.errors.push(
+            fault!(TYPE_MISMATCH, "`+` joins Strings, but this is {}", self.name(found))
+                .help_if(CheckedType::String.remedy(found).map(str::to_owned))
+                .at(other.span),
+        );
     }
 
     fn numeric(&mut self, (operand, found): Typed<'_>, needed: &str) {

@@ -1,7 +1,7 @@
 //! Operators on scalars, vectors and matrices (MLS §10.6).
 
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
-use crate::diag::{At, Diagnostic};
+use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::ValueType;
 use crate::fault;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
@@ -251,7 +251,7 @@ impl<T: Target> Lowering<'_, T> {
                 let a = self.number_of_text(a, span)?;
                 return self.compare_strings(operator, a, b, span);
             }
-            _ => return Err(fault!(ARRAY_MISMATCH, "comparing a String with a number").at(span)),
+            _ => return Err(not_a_string(operator).at(span)),
         };
         let a = &*a;
         if operator == BinaryOperator::Add {
@@ -441,5 +441,17 @@ impl<T: Target> Lowering<'_, T> {
             let total = Array::scalar(self.target.binary(op, total, *element));
             Ok(if exact { self.exact(total, span)? } else { total }.elements[0])
         })
+    }
+}
+
+/// The fault of an operator whose left side is a String, and the right side none.
+fn not_a_string(operator: BinaryOperator) -> Fault {
+    match operator {
+        BinaryOperator::Add => fault!(
+            ARRAY_MISMATCH,
+            "`+` joins Strings, but the right side is none";
+            help: "write `String(x)`"
+        ),
+        _ => fault!(ARRAY_MISMATCH, "comparing a String with a number"),
     }
 }

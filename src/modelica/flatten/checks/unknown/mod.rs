@@ -9,6 +9,7 @@ mod expressions;
 mod modifications;
 mod modified;
 
+use super::imports;
 use super::scope::Scope;
 use crate::diag::Diagnostic;
 use crate::flatten::declared::Declared;
@@ -18,10 +19,10 @@ use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration, Constraint, Element,
-    ImportKind, Section, ShortClass, Subscript, TypeSpecifier,
+    Import, Section, ShortClass, Subscript, TypeSpecifier,
 };
 use crate::syntax::visit::Visit as _;
-use certainty::is_certain;
+pub(super) use certainty::is_certain;
 use modified::Modified;
 use rustc_hash::FxHashSet;
 
@@ -93,7 +94,7 @@ impl<'a> NameCheck<'a, '_> {
 
     fn element(&mut self, class: Scope<'a>, element: &Element) {
         match element {
-            Element::Import(import) => self.import(&import.kind, import.span),
+            Element::Import(import) => self.import(class, import),
             Element::Extends(extends) => {
                 let parts = self.library.parts_of_base(class.class, &extends.base.name);
                 // What the class itself inherits gives no base class a meaning (MLS §5.6.1.4).
@@ -109,21 +110,10 @@ impl<'a> NameCheck<'a, '_> {
         }
     }
 
-    fn import(&mut self, kind: &ImportKind, span: Span) {
-        let targets: Vec<Name> = match kind {
-            ImportKind::Qualified(name)
-            | ImportKind::Renaming(_, name)
-            | ImportKind::Unqualified(name) => vec![name.clone()],
-            ImportKind::Group(package, names) => {
-                names.iter().map(|name| package.child(*name)).collect()
-            }
-        };
-        for target in targets {
-            let parts = self.library.parts_of_reference(None, &target);
-            if let Some(at) = parts.iter().position(Option::is_none)
-                && is_certain(self.library, &parts[..at])
-            {
-                self.unknown_class(None, &target, at, span);
+    fn import(&mut self, class: Scope<'a>, import: &Import) {
+        for (target, at) in imports::missing(self.library, &import.kind) {
+            if self.is_first_of_package(&target, at) {
+                self.errors.push(imports::unknown(class, &target, import.span));
             }
         }
     }
