@@ -89,3 +89,37 @@ fn sizes_that_a_function_computes_are_not_bounded_by_its_arrays() {
         assert!((value - expected).abs() < 1e-9, "{model}: {value}");
     }
 }
+
+/// Slices whose ends a computed Integer gives: without elements where it is negative, and with all of
+/// them where it exceeds the array by what is subtracted from it.
+#[test]
+fn slices_end_where_a_computed_integer_says() {
+    // Each is Σ i u over the first m - 3 of 6 elements, m between -4 and 9.
+    for body in [
+        "y := sum(x[1:m - 3]);",
+        "y := x[1:m - 3]*x[1:m - 3]/u;",
+        "y := sum(x[i] for i in 1:m - 3);",
+        "m := m - 3; y := sum(x[1:m]);",
+        "m := m - 3; z[1:m] := x[1:m]; y := sum(z);",
+        "z[4:m] := x[1:m - 3]; y := sum(z);",
+        "m := m - 3; y := total(x[1:m]);",
+        "m := m - 3; y := sum(cat(1, x[1:m], {0.0}));",
+    ] {
+        let square = body.contains('*');
+        let text = format!(
+            "model M function total input Real v[:]; output Real s = sum(v); algorithm end total;
+             function f input Real u; input Real from; output Real y; protected Integer m, k = 0;
+             Real x[6] = {{i*u for i in 1:6}}; Real z[9] = zeros(9); algorithm
+             while k < 1 loop k := k + 1; m := integer(from); {body} end while; end f;
+             Real y = f(2, if time < 0.25 then -3.5 elseif time < 0.5 then 2.5 elseif
+             time < 0.75 then 5.5 else 9.5); end M;"
+        );
+        let run = simulated(&text, 1.0);
+        for (time, n) in [(0.1, 0), (0.3, 0), (0.6, 2), (0.9, 6)] {
+            let element = |i: i32| if square { 2.0 * f64::from(i * i) } else { 2.0 * f64::from(i) };
+            let expected: f64 = (1..=n).map(element).sum();
+            let value = run.at("y", time);
+            assert!((value - expected).abs() < 1e-9, "{body}: {value}, not {expected}, at {time}");
+        }
+    }
+}

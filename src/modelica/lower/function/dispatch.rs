@@ -113,7 +113,8 @@ fn chain(
     };
     if !is_complete {
         let text = format!(
-            "`{}` of `{}`, on which sizes depend, varies and lies outside 0 to {MOST}",
+            "`{}` of `{}`, on which sizes depend, varies and lies outside 0 to {MOST}, or does not \
+             fit the sizes of the other arguments",
             function.inputs[at].name, function.name
         );
         let parts = vec![StringPart::Text(text.into())];

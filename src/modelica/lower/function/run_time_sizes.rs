@@ -1,7 +1,9 @@
 //! Sizes inside a statement of a function that a computed Integer decides: `s := sum(p[1:n])`.
 //!
 //! The statement is compiled for every value that the Integer can have beside the arrays of the
-//! statement, and the values become a chain of branches. Another value is a fault at run time. This
+//! statement, and the values become a chain of branches: also negative ones, for which `1:n` is empty, and
+//! those beyond the arrays by as much as is added to the Integer, as in `p[1:n - 3]`. Another value is a
+//! fault at run time. This
 //! is the last resort: constants, loops that are unrolled and calls compiled for known arguments
 //! come first, as their code is shorter.
 
@@ -88,13 +90,16 @@ impl Body<'_, '_> {
         if largest > MOST {
             return Err(error);
         }
+        let mut names = Names::default();
+        names.statement(s);
+        let added = names.numbers_in_ranges.min(MOST);
         // What is known in one branch is not known after it.
         let known_once = std::mem::take(&mut self.known_once);
         self.bound_integers += 1;
         let mut result = Err(error);
         for name in self.deciding_integers(s) {
             let mark = self.mark();
-            result = self.branch_by_branch(s, name, largest + 1);
+            result = self.branch_by_branch(s, name, (largest as i64 + 1, added as i64));
             match &result {
                 Err(e) if e.code == NO_CONSTANT_VALUE => self.restore(&mark),
                 _ => break,
@@ -110,31 +115,26 @@ impl Body<'_, '_> {
         &mut self,
         s: &Statement,
         name: Ident,
-        largest: usize,
+        (largest, added): (i64, i64),
     ) -> Result<(), Diagnostic> {
         let Some(integer) = self.integer(name) else { return Ok(()) };
         self.check_bounded(s, (name, integer))?;
-        let (mut ends, mut refused, mut n_possible) = (Vec::new(), None, 0);
+        let (mut ends, mut refused) = (Vec::new(), None);
         for number in 0..=largest {
-            let mark = self.mark();
-            let value = Operand::Constant(number as f64);
-            let is_it = self.relation(RelationOperator::Equal, integer, value, true, s.span);
-            let skip = self.emitter.jump_unless(is_it);
-            match self.statement_with(s, (name, integer), value) {
-                Ok(()) => {
-                    n_possible += 1;
-                    ends.push(self.emitter.jump());
-                    self.emitter.land(skip);
-                }
-                Err(e) if e.code == NO_CONSTANT_VALUE => return Err(e),
-                // With this value the sizes do not fit: it ends in the fault below.
-                Err(e) => {
-                    self.restore(&mark);
-                    refused = Some(e);
+            let branch = self.branch(s, (name, integer), number, &mut ends)?;
+            refused = branch.err().or(refused);
+        }
+        // Beyond the arrays, what does not fit once does not fit farther on.
+        let above: Vec<i64> = (largest + 1..=largest + added).collect();
+        let below: Vec<i64> = (1..=largest + added).map(|number| -number).collect();
+        for values in [above, below] {
+            for number in values {
+                if self.branch(s, (name, integer), number, &mut ends)?.is_err() {
+                    break;
                 }
             }
         }
-        if let (0, Some(error)) = (n_possible, refused) {
+        if let (true, Some(error)) = (ends.is_empty(), refused) {
             return Err(error);
         }
         let text = format!("the value of `{name}`, on which sizes depend, does not fit them");
@@ -143,6 +143,32 @@ impl Body<'_, '_> {
         self.emitter.emit(Instruction::Assert { a, message });
         ends.into_iter().for_each(|end| self.emitter.land(end));
         Ok(())
+    }
+
+    /// `if n == number then s(number)`, and a jump to the end; the error where sizes do not fit.
+    fn branch(
+        &mut self,
+        s: &Statement,
+        (name, integer): (Ident, Operand),
+        number: i64,
+        ends: &mut Vec<usize>,
+    ) -> Result<Result<(), Diagnostic>, Diagnostic> {
+        let mark = self.mark();
+        let value = Operand::Constant(number as f64);
+        let is_it = self.relation(RelationOperator::Equal, integer, value, true, s.span);
+        let skip = self.emitter.jump_unless(is_it);
+        match self.statement_with(s, (name, integer), value) {
+            Ok(()) => {
+                ends.push(self.emitter.jump());
+                self.emitter.land(skip);
+                Ok(Ok(()))
+            }
+            Err(e) if e.code == NO_CONSTANT_VALUE => Err(e),
+            Err(e) => {
+                self.restore(&mark);
+                Ok(Err(e))
+            }
+        }
     }
 
     /// The statement where an Integer has another operand than its own.
@@ -257,6 +283,8 @@ struct Names {
     all: Vec<Ident>,
     /// Those in the ends of ranges.
     in_ranges: Vec<Ident>,
+    /// The sum of the Integers that are written there.
+    numbers_in_ranges: usize,
     ranges: usize,
 }
 
@@ -264,6 +292,10 @@ impl Visit for Names {
     fn expression(&mut self, expression: &Expression) {
         let is_range = matches!(expression.kind, ExpressionKind::Range { .. });
         self.ranges += usize::from(is_range);
+        if let (ExpressionKind::Integer(number), 1..) = (&expression.kind, self.ranges) {
+            let number = usize::try_from(*number).unwrap_or(0);
+            self.numbers_in_ranges = self.numbers_in_ranges.saturating_add(number);
+        }
         walk_expression(self, expression);
         self.ranges -= usize::from(is_range);
     }
