@@ -29,6 +29,7 @@ pub(crate) use gapilib_base::{
 };
 pub(crate) use gapilib_numerics::{mat, sim};
 
+pub mod arithmetic;
 pub mod bytecode;
 pub mod causalize;
 pub mod codegen;

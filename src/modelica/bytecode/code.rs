@@ -1,9 +1,9 @@
 //! Instructions and the functions made of them. Data only.
 
-use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
 use super::machine_code::MachineCode;
 use super::run_time_strings::StringTable;
+use crate::arithmetic::Elementary;
 use crate::external::{Callable, Contents, Effect, Entry, FAIL, Objects, Slot, SlotKind};
 use crate::source::Span;
 use crate::symbolic::{Inverse, RelationOperator};
@@ -43,14 +43,14 @@ pub enum Instruction {
     Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
     /// A function of one argument.
     Unary {
-        #[serde(with = "super::elementary::by_number")]
+        #[serde(with = "crate::arithmetic::by_number")]
         function: &'static Elementary,
         d: Register,
         a: Register,
     },
     /// A function of two arguments.
     Binary {
-        #[serde(with = "super::elementary::by_number")]
+        #[serde(with = "crate::arithmetic::by_number")]
         function: &'static Elementary,
         d: Register,
         a: Register,

@@ -2,8 +2,8 @@
 
 use super::code::{Code, ExternalCall, Functions};
 use super::failure::{LAST_C_MESSAGE, Reason};
-use super::number::{Dual, Number};
 use super::run_time_strings::RunTimeStrings;
+use crate::arithmetic::{Dual, Number};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::external::{Call, Contents, Journal, Object, Outside, Random, Slot, SlotKind};

@@ -7,7 +7,7 @@
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use super::number::Number;
+use crate::arithmetic::Number;
 use crate::jit::Executable;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,12 +1,12 @@
 //! Machine code and the interpreter agree to the bit.
 
 use super::super::code::{Code, Functions, Instruction};
-use super::super::elementary::Elementary;
 use super::super::failure::Reason;
 use super::super::machine::{Machine, MachineRequest, execute};
-use super::super::number::Dual;
 use super::super::translation::translated;
 use super::*;
+use crate::arithmetic::Dual;
+use crate::arithmetic::Elementary;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::find;
 use proptest::prelude::*;

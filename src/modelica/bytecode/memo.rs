@@ -5,7 +5,7 @@
 //! the arguments of the one before has its results, and is charged for the same instructions.
 
 use super::code::{Code, Functions, Instruction};
-use super::number::{Dual, Number};
+use crate::arithmetic::{Dual, Number};
 
 /// Functions with fewer instructions, which call nothing, are computed again: keeping costs as much.
 const FEWEST: usize = 48;

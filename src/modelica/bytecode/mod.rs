@@ -16,14 +16,12 @@
 //! it.
 
 mod code;
-mod elementary;
 mod external;
 mod failure;
 mod kinks;
 mod machine;
 mod machine_code;
 mod memo;
-mod number;
 mod range;
 mod run_time_strings;
 #[cfg(feature = "jit")]
@@ -33,11 +31,10 @@ mod translation;
 mod translation;
 mod validation;
 
+pub use crate::arithmetic::{Dual, Elementary, Number};
 pub use crate::external::Journal;
 pub use code::{Code, Derivative, Functions, Instruction};
 pub(crate) use code::{ExternalCall, Register};
-pub use elementary::Elementary;
 pub use failure::{Failure, Reason};
 pub use machine::Machine;
-pub use number::{Dual, Number};
 pub use run_time_strings::StringTable;

@@ -7,10 +7,10 @@
 #![allow(unsafe_code, reason = "machine code hands over registers as pointers")]
 
 use super::code::{Code, Functions, Instruction, Register};
-use super::elementary::Elementary;
 use super::machine_code::Translated;
-use super::number::{Dual, Number};
 use super::range::iterations;
+use crate::arithmetic::Elementary;
+use crate::arithmetic::{Dual, Number};
 use crate::elementary;
 use crate::jit::{self, Effort, binary, condition, unary};
 use crate::symbolic::function::Value as FunctionValue;

@@ -33,7 +33,7 @@ struct Partial {
 }
 
 /// A function in a file: its number in the table.
-pub(super) mod by_number {
+pub(crate) mod by_number {
     use super::{Elementary, FunctionId};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -72,12 +72,12 @@ impl Elementary {
     }
 
     /// The natural logarithm.
-    pub(super) fn logarithm() -> &'static Elementary {
+    pub(crate) fn logarithm() -> &'static Elementary {
         *LOGARITHM
     }
 
     /// Whether the value for an argument is beyond the largest number, and not outside the domain.
-    pub(super) fn overflows_at(&self, argument: f64) -> bool {
+    pub(crate) fn overflows_at(&self, argument: f64) -> bool {
         argument.is_finite()
             && self.id.get().accepts(&[argument])
             && self.value.of(&[argument]).is_infinite()
@@ -89,7 +89,7 @@ impl Elementary {
     }
 
     /// The partial derivative for an argument (from 0).
-    pub(super) fn partial<T: Number>(&self, which: usize, arguments: &[T]) -> T {
+    pub(crate) fn partial<T: Number>(&self, which: usize, arguments: &[T]) -> T {
         self.partials[which].of(arguments)
     }
 }

@@ -39,9 +39,9 @@ pub trait Number: Copy {
 /// Frames of all calls, for each kind of number.
 #[derive(Debug, Clone, Default)]
 pub struct Stacks {
-    pub(super) values: Vec<f64>,
-    pub(super) first: Vec<Dual<f64>>,
-    pub(super) second: Vec<Dual<Dual<f64>>>,
+    pub(crate) values: Vec<f64>,
+    pub(crate) first: Vec<Dual<f64>>,
+    pub(crate) second: Vec<Dual<Dual<f64>>>,
 }
 
 impl Number for f64 {
