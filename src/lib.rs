@@ -97,6 +97,7 @@ pub mod internals {
     //! - [`value`], [`symbolic`]: values and their operations; scalar expressions;
     //! - [`functions`], [`eval`]: the functions and operators of the language; the interpreter;
     //! - [`external`]: functions that libraries declare `external`, in Rust;
+    //! - [`arithmetic`]: what instructions compute, with derivatives and without;
     //! - [`bytecode`]: functions that loop and branch, as instructions;
     //! - [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
     //!   equations;
@@ -127,8 +128,8 @@ pub mod internals {
     pub use gapilib_fmi as fmi;
     pub use gapilib_identify as identify;
     pub use gapilib_modelica::{
-        bytecode, causalize, codegen, eval, external, flatten, format, functions, lower, runtime,
-        symbolic, syntax, value,
+        arithmetic, bytecode, causalize, codegen, eval, external, flatten, format, functions,
+        lower, runtime, symbolic, syntax, value,
     };
     pub use gapilib_numerics::{frequency, ga, mat, results, sim};
     pub use gapilib_script as script;

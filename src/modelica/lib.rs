@@ -14,8 +14,8 @@
 //!   equations;
 //! - [`symbolic`], [`causalize`]: scalar expressions; index reduction, block lower triangular form,
 //!   tearing;
-//! - [`bytecode`], [`codegen`], [`runtime`]: functions as instructions, a program of instruction
-//!   tapes, and the systems that execute it.
+//! - [`arithmetic`], [`bytecode`], [`codegen`], [`runtime`]: what instructions compute, functions as
+//!   instructions, a program of instruction tapes, and the systems that execute it.
 
 #![cfg_attr(
     not(feature = "jit"),

@@ -19,6 +19,20 @@ pub struct Elementary {
     partials: Vec<Partial>,
 }
 
+impl PartialEq for Elementary {
+    fn eq(&self, other: &Elementary) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Elementary {}
+
+impl std::hash::Hash for Elementary {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.id.hash(state);
+    }
+}
+
 impl std::fmt::Debug for Elementary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Elementary").field("name", &self.id.get().name).finish_non_exhaustive()
@@ -33,7 +47,7 @@ struct Partial {
 }
 
 /// A function in a file: its number in the table.
-pub(crate) mod by_number {
+pub(super) mod by_number {
     use super::{Elementary, FunctionId};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -72,24 +86,12 @@ impl Elementary {
     }
 
     /// The natural logarithm.
-    pub(crate) fn logarithm() -> &'static Elementary {
+    pub(super) fn logarithm() -> &'static Elementary {
         *LOGARITHM
     }
 
-    /// Whether the value for an argument is beyond the largest number, and not outside the domain.
-    pub(crate) fn overflows_at(&self, argument: f64) -> bool {
-        argument.is_finite()
-            && self.id.get().accepts(&[argument])
-            && self.value.of(&[argument]).is_infinite()
-    }
-
-    /// The maximum of two numbers.
-    pub(crate) fn maximum() -> &'static Elementary {
-        Elementary::of(function::find("max").expect("the function table has a maximum"))
-    }
-
     /// The partial derivative for an argument (from 0).
-    pub(crate) fn partial<T: Number>(&self, which: usize, arguments: &[T]) -> T {
+    pub(super) fn partial<T: Number>(&self, which: usize, arguments: &[T]) -> T {
         self.partials[which].of(arguments)
     }
 }

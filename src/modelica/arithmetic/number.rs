@@ -2,6 +2,7 @@
 
 use super::elementary::Elementary;
 use crate::elementary;
+use crate::symbolic::function::Value;
 
 /// A number with its derivatives, or without.
 pub trait Number: Copy {
@@ -30,18 +31,8 @@ pub trait Number: Copy {
     fn unary(self, function: &Elementary) -> Self;
     /// A function of two arguments.
     fn binary(self, b: Self, function: &Elementary) -> Self;
-    /// The stack of a machine for such numbers.
-    fn stack(stacks: &mut Stacks) -> &mut Vec<Self>;
     /// Whether all bits are the same.
     fn has_bits_of(self, other: Self) -> bool;
-}
-
-/// Frames of all calls, for each kind of number.
-#[derive(Debug, Clone, Default)]
-pub struct Stacks {
-    pub(crate) values: Vec<f64>,
-    pub(crate) first: Vec<Dual<f64>>,
-    pub(crate) second: Vec<Dual<Dual<f64>>>,
 }
 
 impl Number for f64 {
@@ -84,15 +75,17 @@ impl Number for f64 {
     }
 
     fn unary(self, function: &Elementary) -> f64 {
-        function.value.of(&[self])
+        match function.value {
+            Value::Unary(value) => value(self),
+            Value::Binary(_) => f64::NAN,
+        }
     }
 
     fn binary(self, b: f64, function: &Elementary) -> f64 {
-        function.value.of(&[self, b])
-    }
-
-    fn stack(stacks: &mut Stacks) -> &mut Vec<f64> {
-        &mut stacks.values
+        match function.value {
+            Value::Binary(value) => value(self, b),
+            Value::Unary(_) => f64::NAN,
+        }
     }
 
     fn has_bits_of(self, other: f64) -> bool {
@@ -122,9 +115,9 @@ where
     }
 }
 
-/// The arithmetic of dual numbers over numbers with this stack.
+/// The arithmetic of dual numbers over such numbers.
 macro_rules! dual {
-    ($inner:ty, $stack:ident) => {
+    ($inner:ty) => {
         impl Number for Dual<$inner> {
             const PARTS: usize = 2 * <$inner as Number>::PARTS;
 
@@ -192,10 +185,6 @@ macro_rules! dual {
                 Dual { v, d: first.d.add(second.d) }
             }
 
-            fn stack(stacks: &mut Stacks) -> &mut Vec<Self> {
-                &mut stacks.$stack
-            }
-
             fn has_bits_of(self, other: Self) -> bool {
                 self.v.has_bits_of(other.v) && self.d.has_bits_of(other.d)
             }
@@ -203,5 +192,5 @@ macro_rules! dual {
     };
 }
 
-dual!(f64, first);
-dual!(Dual<f64>, second);
+dual!(f64);
+dual!(Dual<f64>);

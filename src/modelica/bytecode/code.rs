@@ -3,17 +3,14 @@
 use super::failure::{Failure, Reason, said};
 use super::machine_code::MachineCode;
 use super::run_time_strings::StringTable;
-use crate::arithmetic::Elementary;
+use crate::arithmetic::{Operation, Operator, Register};
 use crate::external::{Callable, Contents, Effect, Entry, FAIL, Objects, Slot, SlotKind};
 use crate::source::Span;
-use crate::symbolic::{Inverse, RelationOperator};
+use crate::symbolic::Inverse;
 use std::sync::Arc;
 
 /// Stands for a message that is put together where it fails.
 const UNKNOWN: &str = "…";
-
-/// A register of a frame.
-pub(crate) type Register = u32;
 
 /// One instruction; `d` is the register written, `a` and `b` are read.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
@@ -25,37 +22,8 @@ pub enum Instruction {
     Unassign { d: Register, n: u32 },
     /// `n` registers from others.
     Move { d: Register, a: Register, n: u32 },
-    /// `-a`
-    Neg { d: Register, a: Register },
-    /// `not a`
-    Not { d: Register, a: Register },
-    /// `a + b`
-    Add { d: Register, a: Register, b: Register },
-    /// `a - b`
-    Sub { d: Register, a: Register, b: Register },
-    /// `a * b`
-    Mul { d: Register, a: Register, b: Register },
-    /// `a / b`
-    Div { d: Register, a: Register, b: Register },
-    /// `a ^ b`
-    Pow { d: Register, a: Register, b: Register },
-    /// 1 if the relation holds, otherwise 0.
-    Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
-    /// A function of one argument.
-    Unary {
-        #[serde(with = "crate::arithmetic::by_number")]
-        function: &'static Elementary,
-        d: Register,
-        a: Register,
-    },
-    /// A function of two arguments.
-    Binary {
-        #[serde(with = "crate::arithmetic::by_number")]
-        function: &'static Elementary,
-        d: Register,
-        a: Register,
-        b: Register,
-    },
+    /// A number from one or two others.
+    Operation(Operation),
     /// The offset of a subscript (from 1, at most `size`) times `stride` is added to `d`.
     Offset { d: Register, subscript: Register, size: u32, stride: u32 },
     /// The register `base` plus an offset.
@@ -80,6 +48,12 @@ pub enum Instruction {
     Warn { a: Register, message: u32 },
     /// Fails unless `a` is finite.
     Finite { a: Register },
+}
+
+impl From<Operation> for Instruction {
+    fn from(operation: Operation) -> Instruction {
+        Instruction::Operation(operation)
+    }
 }
 
 /// A function for arguments of known sizes.
@@ -299,17 +273,7 @@ impl Functions {
             return (message.to_owned(), span);
         }
         let words = match (failure.reason, code.instructions.get(failure.at as usize)) {
-            (
-                Reason::NotFinite,
-                Some(Instruction::Unary { function, .. } | Instruction::Binary { function, .. }),
-            ) => {
-                let function = function.id.get();
-                let why = function.domain.map_or("the result is not finite", |d| d.words);
-                format!("`{}` has no value: {why}", function.name)
-            }
-            (Reason::NotFinite, Some(Instruction::Div { .. })) => {
-                "a division by zero or an overflow of a division".to_owned()
-            }
+            (Reason::NotFinite, Some(Instruction::Operation(operation))) => not_finite(operation),
             (Reason::External, Some(Instruction::External { external })) => {
                 let call = &code.externals[*external as usize];
                 let entry = call.entry;
@@ -326,5 +290,17 @@ impl Functions {
             (reason, _) => reason.words().to_owned(),
         };
         (format!("{words} in the function `{}`", code.name), span)
+    }
+}
+
+/// Why an operation has no finite value.
+fn not_finite(operation: &Operation) -> String {
+    match (operation.operator, operation.operator.function()) {
+        (_, Some(function)) => {
+            let why = function.domain.map_or("the result is not finite", |d| d.words);
+            format!("`{}` has no value: {why}", function.name)
+        }
+        (Operator::Div, None) => "a division by zero or an overflow of a division".to_owned(),
+        (_, None) => Reason::NotFinite.words().to_owned(),
     }
 }

@@ -1,6 +1,7 @@
 //! Whether a derivative of a function may jump, by what its instructions are.
 
 use super::code::{Code, Functions, Instruction};
+use crate::arithmetic::{Operation, Operator};
 
 impl Functions {
     /// Whether the derivative of a function, or its value, may jump: it decides by a relation, other than
@@ -14,10 +15,10 @@ impl Functions {
 impl Code {
     fn is_kink(&self, instruction: &Instruction) -> bool {
         match instruction {
-            Instruction::Unary { function, .. } | Instruction::Binary { function, .. } => {
-                function.id.get().has_kinks()
-            }
-            Instruction::Relation { d, a, .. } => !self.is_asserted(*d) && !self.counts(*a),
+            Instruction::Operation(Operation { operator, d, a, .. }) => match operator {
+                Operator::Relation(_) => !self.is_asserted(*d) && !self.counts(*a),
+                other => other.function().is_some_and(|function| function.has_kinks()),
+            },
             Instruction::External { external } => !self.externals[*external as usize].only_fails(),
             _ => false,
         }
@@ -40,7 +41,9 @@ impl Code {
         });
         is_begun
             && self.instructions.iter().any(|own| match own {
-                Instruction::Add { d, a, b } => *d == register && *a == register && is_one(*b),
+                Instruction::Operation(Operation { operator: Operator::Add, d, a, b }) => {
+                    *d == register && *a == register && is_one(*b)
+                }
                 _ => false,
             })
     }

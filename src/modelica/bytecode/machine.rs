@@ -6,8 +6,9 @@ use super::failure::{Failure, Reason};
 use super::machine_code::Next;
 use super::memo::{Kept, Memos, worth_keeping};
 use super::range::iterations;
+use super::stacks::{Stacked, Stacks};
 use super::translation::translated;
-use crate::arithmetic::{Dual, Number, Stacks};
+use crate::arithmetic::{Dual, Number, Operation};
 use crate::budget::instruction_limit;
 use crate::external::Journal;
 use std::ops::Range;
@@ -174,7 +175,7 @@ impl Machine {
     }
 
     /// The first frame, with the arguments.
-    fn prepare<T: Number>(
+    fn prepare<T: Stacked>(
         &mut self,
         functions: &Functions,
         function: u32,
@@ -435,7 +436,7 @@ pub(super) struct Call {
 }
 
 /// Numbers whose derivatives another function may compute.
-trait Differentiate: RunExternal + Kept {
+trait Differentiate: RunExternal + Kept + Stacked {
     /// Calls a function with its derivative function, from and to the stack; whether this is
     /// possible.
     fn differentiate(
@@ -476,7 +477,7 @@ impl Differentiate for f64 {
 
 impl<T: Differentiate> Differentiate for Dual<T>
 where
-    Dual<T>: RunExternal + Kept,
+    Dual<T>: RunExternal + Kept + Stacked,
 {
     fn differentiate(
         machine: &mut Machine,
@@ -590,7 +591,6 @@ pub(super) fn execute<T: Number>(
     budget: &mut u64,
     pause: u64,
 ) -> Result<Option<MachineRequest>, Reason> {
-    let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
     while let Some(instruction) = code.instructions.get(*at) {
         *at += 1;
         match *instruction {
@@ -602,36 +602,7 @@ pub(super) fn execute<T: Number>(
             Instruction::Move { d, a, n } => {
                 r.copy_within(a as usize..(a + n) as usize, d as usize);
             }
-            Instruction::Neg { d, a } => r[d as usize] = r[a as usize].neg(),
-            Instruction::Not { d, a } => r[d as usize] = truth(!decided(r[a as usize])?),
-            Instruction::Add { d, a, b } => r[d as usize] = r[a as usize].add(r[b as usize]),
-            Instruction::Sub { d, a, b } => r[d as usize] = r[a as usize].sub(r[b as usize]),
-            Instruction::Mul { d, a, b } => r[d as usize] = r[a as usize].mul(r[b as usize]),
-            Instruction::Div { d, a, b } => {
-                let (x, y) = (r[a as usize], r[b as usize]);
-                r[d as usize] = finite(x.div(y)).or_else(|e| given(r, a, b).and(Err(e)))?;
-            }
-            Instruction::Pow { d, a, b } => {
-                given(r, a, b)?;
-                r[d as usize] = finite(r[a as usize].pow(r[b as usize]))?;
-            }
-            Instruction::Relation { operator, d, a, b } => {
-                given(r, a, b)?;
-                let (a, b) = (r[a as usize].value(), r[b as usize].value());
-                r[d as usize] = truth(operator.holds(a, b));
-            }
-            Instruction::Unary { function, d, a } => {
-                let argument = r[a as usize];
-                let result = argument.unary(function);
-                r[d as usize] = match finite(result) {
-                    Err(_) if function.overflows_at(argument.value()) => result,
-                    finite => finite.or_else(|e| given(r, a, a).and(Err(e)))?,
-                };
-            }
-            Instruction::Binary { function, d, a, b } => {
-                given(r, a, b)?;
-                r[d as usize] = finite(r[a as usize].binary(r[b as usize], function))?;
-            }
+            Instruction::Operation(operation) => r[operation.d as usize] = computed(operation, r)?,
             Instruction::Offset { d, subscript, size, stride } => {
                 let subscript = r[subscript as usize].value();
                 if !(1.0..=f64::from(size)).contains(&subscript) || subscript.fract() != 0.0 {
@@ -713,7 +684,23 @@ fn decided<T: Number>(condition: T) -> Result<bool, Reason> {
     }
 }
 
-/// Whether two operands have values: some functions have one for a NaN.
+/// The value of an operation, which must be finite unless it overflows; NaN from an operand without
+/// value is that operand's fault.
+#[inline(always)]
+fn computed<T: Number>(operation: Operation, r: &[T]) -> Result<T, Reason> {
+    let Operation { operator, a, b, .. } = operation;
+    if operator.hides_nan() {
+        given(r, a, b)?;
+    }
+    let result = operation.value(r);
+    match operator.may_fail() && !result.value().is_finite() {
+        true if operator.overflows_at(r[a as usize].value()) => Ok(result),
+        true => given(r, a, b).and(Err(Reason::NotFinite)),
+        false => Ok(result),
+    }
+}
+
+/// Whether two operands have values.
 fn given<T: Number>(r: &[T], a: u32, b: u32) -> Result<(), Reason> {
     match r[a as usize].value().is_nan() || r[b as usize].value().is_nan() {
         true => Err(Reason::Unassigned),
@@ -721,7 +708,7 @@ fn given<T: Number>(r: &[T], a: u32, b: u32) -> Result<(), Reason> {
     }
 }
 
-/// A result that must be finite; NaN from an operand without value is that operand's fault.
+/// A result that must be finite.
 fn finite<T: Number>(result: T) -> Result<T, Reason> {
     match result.value().is_finite() {
         true => Ok(result),
@@ -733,6 +720,7 @@ fn finite<T: Number>(result: T) -> Result<T, Reason> {
 mod tests {
     use super::super::code::ExternalCall;
     use super::*;
+    use crate::arithmetic::Operator;
     use crate::external::{COMPOSE, Slot, SlotKind};
 
     /// `y = x*x`, after `String(x)` was made.
@@ -740,8 +728,10 @@ mod tests {
         let slot = |kind, first, dims: &[u32]| Slot { kind, first, dims: dims.into() };
         let arguments = vec![slot(SlotKind::Number, 0, &[5])];
         let call = ExternalCall::new(&COMPOSE, arguments, Some(slot(SlotKind::Numbered, 5, &[])));
-        let instructions =
-            vec![Instruction::External { external: 0 }, Instruction::Mul { d: 6, a: 0, b: 0 }];
+        let instructions = vec![
+            Instruction::External { external: 0 },
+            Operation::binary(Operator::Mul, 6, 0, 0).into(),
+        ];
         let code = Code {
             n_inputs: 1,
             outputs: 6,

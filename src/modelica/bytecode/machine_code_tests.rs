@@ -5,8 +5,8 @@ use super::super::failure::Reason;
 use super::super::machine::{Machine, MachineRequest, execute};
 use super::super::translation::translated;
 use super::*;
-use crate::arithmetic::Dual;
 use crate::arithmetic::Elementary;
+use crate::arithmetic::{Dual, Operation, Operator};
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::find;
 use proptest::prelude::*;
@@ -26,22 +26,26 @@ fn elementary(name: &str) -> &'static Elementary {
 
 fn instruction((kind, [a, b, c, e]): Draw, n: usize) -> Instruction {
     let [d, a, b] = [a, b, c].map(|x| u32::from(x) % 8);
+    let unary = |operator| Operation::unary(operator, d, a).into();
+    let binary = |operator| Operation::binary(operator, d, a, b).into();
     let target = u32::from(e) % (n as u32 + 1);
     match kind % 24 {
         0 => Instruction::Constant { d, value: f64::from(e) - 100.0 },
         1 => Instruction::Move { d, a, n: 1 },
         2 => Instruction::Move { d, a, n: 1 + u32::from(e) % 16 },
-        3 => Instruction::Neg { d, a },
-        4 => Instruction::Not { d, a },
-        5 | 6 => Instruction::Add { d, a, b },
-        7 => Instruction::Sub { d, a, b },
-        8 | 9 => Instruction::Mul { d, a, b },
-        10 => Instruction::Div { d, a, b },
-        11 => Instruction::Pow { d, a, b },
-        12 => Instruction::Relation { operator: OPERATORS[e as usize % 3], d, a, b },
-        13 => Instruction::Unary { function: elementary("sin"), d, a },
-        14 => Instruction::Unary { function: elementary(["sqrt", "exp"][e as usize % 2]), d, a },
-        15 => Instruction::Binary { function: elementary("atan2"), d, a, b },
+        3 => unary(Operator::Neg),
+        4 => unary(Operator::Not),
+        5 | 6 => binary(Operator::Add),
+        7 => binary(Operator::Sub),
+        8 | 9 => binary(Operator::Mul),
+        10 => binary(Operator::Div),
+        11 => binary(Operator::Pow),
+        12 => binary(Operator::Relation(OPERATORS[e as usize % 3])),
+        13 => unary(Operator::Unary(elementary("sin"))),
+        14 => unary(Operator::Unary(elementary(["sqrt", "exp"][e as usize % 2]))),
+        15 => binary(
+            [Operator::Binary(elementary("atan2")), Operator::And, Operator::Or][e as usize % 3],
+        ),
         16 => Instruction::Offset { d, subscript: a, size: 5, stride: 1 + b % 3 },
         17 => Instruction::Load { d, base: 8 + b, offset: a },
         18 => Instruction::Store { base: 8 + b, offset: d, a },
@@ -126,7 +130,7 @@ proptest! {
 /// `for i in 1 : n loop y := f(y) + i*x; end for`, where `f(y) = y/2`.
 fn a_loop() -> Functions {
     let half = Code {
-        instructions: vec![Instruction::Mul { d: 1, a: 0, b: 2 }],
+        instructions: vec![Operation::binary(Operator::Mul, 1, 0, 2).into()],
         n_inputs: 1,
         outputs: 1,
         n_outputs: 1,
@@ -136,12 +140,12 @@ fn a_loop() -> Functions {
     };
     // x 0, n 1, y 2, i 3, 1 4, condition 5, f(y) 6, i*x 7
     let instructions = vec![
-        Instruction::Relation { operator: RelationOperator::LessEqual, d: 5, a: 3, b: 1 },
+        Operation::binary(Operator::Relation(RelationOperator::LessEqual), 5, 3, 1).into(),
         Instruction::JumpUnless { a: 5, target: 7 },
         Instruction::Call { function: 1, d: 6, a: 2 },
-        Instruction::Mul { d: 7, a: 3, b: 0 },
-        Instruction::Add { d: 2, a: 6, b: 7 },
-        Instruction::Add { d: 3, a: 3, b: 4 },
+        Operation::binary(Operator::Mul, 7, 3, 0).into(),
+        Operation::binary(Operator::Add, 2, 6, 7).into(),
+        Operation::binary(Operator::Add, 3, 3, 4).into(),
         Instruction::Jump { target: 0 },
     ];
     let sum = Code {

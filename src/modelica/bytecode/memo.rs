@@ -124,17 +124,18 @@ pub(super) fn worth_keeping(functions: &Functions) -> Box<[bool]> {
 mod tests {
     use super::super::Machine;
     use super::*;
+    use crate::arithmetic::{Operation, Operator};
 
     /// x^65 in `long`, and `f(x, y) = long(x) + long(y)`.
     fn functions(impure: bool) -> Functions {
-        let multiply = Instruction::Mul { d: 1, a: 1, b: 0 };
+        let multiply: Instruction = Operation::binary(Operator::Mul, 1, 1, 0).into();
         let mut instructions = vec![Instruction::Move { d: 1, a: 0, n: 1 }];
         instructions.extend([multiply; 64]);
         let long = Code { instructions, impure, ..one_output(1, 1, 2) };
         let calls = [
             Instruction::Call { function: 0, d: 3, a: 0 },
             Instruction::Call { function: 0, d: 4, a: 1 },
-            Instruction::Add { d: 2, a: 3, b: 4 },
+            Operation::binary(Operator::Add, 2, 3, 4).into(),
         ];
         let both = Code { instructions: calls.to_vec(), ..one_output(2, 2, 5) };
         Functions { codes: vec![long, both], ..Functions::default() }

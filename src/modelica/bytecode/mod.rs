@@ -2,8 +2,8 @@
 //!
 //! A [`Code`] is a function for arguments of known sizes: every scalar of its inputs, outputs and
 //! variables is a register of its frame. Booleans are 0 and 1, Integers and ordinals whole numbers.
-//! One loop runs the instructions on any [`Number`]: on `f64` for values, on [`Dual`] numbers for
-//! derivatives (forward accumulation, [Griewank & Walther 2008](gapilib_base::bibliography#griewank-2008)),
+//! One loop runs the instructions on any [`Number`](crate::arithmetic::Number): on `f64` for values, on
+//! [`Dual`](crate::arithmetic::Dual) numbers for derivatives (forward accumulation, [Griewank & Walther 2008](gapilib_base::bibliography#griewank-2008)),
 //! on dual numbers of dual numbers for second derivatives. What runs often on values or on dual
 //! numbers becomes machine code.
 //!
@@ -24,6 +24,7 @@ mod machine_code;
 mod memo;
 mod range;
 mod run_time_strings;
+mod stacks;
 #[cfg(feature = "jit")]
 mod translation;
 #[cfg(not(feature = "jit"))]
@@ -31,10 +32,9 @@ mod translation;
 mod translation;
 mod validation;
 
-pub use crate::arithmetic::{Dual, Elementary, Number};
 pub use crate::external::Journal;
+pub(crate) use code::ExternalCall;
 pub use code::{Code, Derivative, Functions, Instruction};
-pub(crate) use code::{ExternalCall, Register};
 pub use failure::{Failure, Reason};
 pub use machine::Machine;
 pub use run_time_strings::StringTable;

@@ -6,19 +6,16 @@
 
 #![allow(unsafe_code, reason = "machine code hands over registers as pointers")]
 
-use super::code::{Code, Functions, Instruction, Register};
+use super::code::{Code, Functions, Instruction};
 use super::machine_code::Translated;
 use super::range::iterations;
-use crate::arithmetic::Elementary;
-use crate::arithmetic::{Dual, Number};
-use crate::elementary;
-use crate::jit::{self, Effort, binary, condition, unary};
-use crate::symbolic::function::Value as FunctionValue;
+use crate::arithmetic::translation::{Operand, Translator, is_true, sum};
+use crate::arithmetic::{Number, Operation, Register};
+use crate::jit::{self, Effort};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{
-    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, StackSlot, StackSlotData,
-    StackSlotKind, Type, Value, types,
+    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, Type, Value, types,
 };
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch, Variable};
@@ -73,8 +70,7 @@ fn translate(
     let budget = builder.declare_var(types::I64);
     let before = builder.ins().load(types::I64, MemFlagsData::trusted(), budget_address, 0);
     builder.def_var(budget, before);
-    let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, 8 * parts as u32, 3);
-    let result = builder.create_sized_stack_slot(slot);
+    let translator = Translator::new(&mut builder, target, parts);
     let callees = Callees::new(&mut builder, target);
     let mut translation = Translation {
         builder,
@@ -86,7 +82,7 @@ fn translate(
         budget_address,
         budget,
         left,
-        result,
+        operations: translator,
         callees,
         blocks: BTreeMap::new(),
         known: FxHashMap::default(),
@@ -102,10 +98,6 @@ fn translate(
 
 /// The signatures of functions of this process.
 struct Callees {
-    /// Functions of the table with one and two arguments.
-    table: [SigRef; 2],
-    /// The same on dual numbers, by address: the function, the operands and the result.
-    dual: [SigRef; 2],
     /// [`copy_row`].
     copy: SigRef,
     /// [`fill_row`].
@@ -127,50 +119,12 @@ impl Callees {
         };
         let number = types::F64;
         Callees {
-            table: [
-                import(&[pointer, number], Some(number)),
-                import(&[pointer, number, number], Some(number)),
-            ],
-            dual: [import(&[pointer; 3], None), import(&[pointer; 4], None)],
             copy: import(&[pointer; 3], None),
             fill: import(&[pointer, pointer, number, pointer], None),
             lacks: import(&[pointer; 3], Some(types::I64)),
             iterations: import(&[pointer; 2], Some(number)),
         }
     }
-}
-
-/// A function of one argument on a dual number.
-unsafe extern "C" fn dual_unary(
-    function: *const Elementary,
-    a: *const Dual<f64>,
-    result: *mut Dual<f64>,
-) {
-    // SAFETY: the function is of the table, which lives for ever; a register of the frame; a slot of
-    // the stack.
-    unsafe { *result = (*a).unary(&*function) }
-}
-
-/// A function of two arguments on dual numbers.
-unsafe extern "C" fn dual_binary(
-    function: *const Elementary,
-    a: *const Dual<f64>,
-    b: *const Dual<f64>,
-    result: *mut Dual<f64>,
-) {
-    // SAFETY: as in `dual_unary`.
-    unsafe { *result = (*a).binary(*b, &*function) }
-}
-
-/// A power of dual numbers; the first argument is that of [`dual_binary`] and not used.
-unsafe extern "C" fn dual_power(
-    _: *const Elementary,
-    a: *const Dual<f64>,
-    b: *const Dual<f64>,
-    result: *mut Dual<f64>,
-) {
-    // SAFETY: as in `dual_unary`.
-    unsafe { *result = (*a).pow(*b) }
 }
 
 /// Copies a row of so many parts of numbers.
@@ -203,19 +157,6 @@ unsafe extern "C" fn iterations_of(range: *const f64, parts: usize) -> f64 {
     iterations(range[0], range[parts], range[2 * parts]).unwrap_or(f64::NAN)
 }
 
-/// A number with its derivative where it has one.
-#[derive(Clone, Copy)]
-struct Operand {
-    v: Value,
-    d: Option<Value>,
-}
-
-/// A function of this process for dual numbers, and the address of the one of the table that it takes.
-struct OnDuals {
-    callee: usize,
-    function: usize,
-}
-
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     code: &'a Code,
@@ -227,8 +168,7 @@ struct Translation<'a> {
     budget: Variable,
     /// Writes the budget back and returns the number of an instruction.
     left: Block,
-    /// The result of a function on dual numbers.
-    result: StackSlot,
+    operations: Translator,
     callees: Callees,
     /// Where code begins that a jump leads to or that is entered.
     blocks: BTreeMap<usize, Block>,
@@ -355,17 +295,7 @@ impl Translation<'_> {
 
     /// A value without derivative.
     fn constant(&mut self, v: Value) -> Operand {
-        let d = (self.parts == 2).then(|| self.builder.ins().f64const(0.0));
-        Operand { v, d }
-    }
-
-    /// Sets 1 or 0.
-    fn set_truth(&mut self, d: Register, holds: Value) {
-        let one = self.builder.ins().f64const(1.0);
-        let zero = self.builder.ins().f64const(0.0);
-        let value = self.builder.ins().select(holds, one, zero);
-        let operand = self.constant(value);
-        self.set(d, operand);
+        self.operations.constant(&mut self.builder, v)
     }
 
     /// The value of a condition, which must have one.
@@ -373,22 +303,7 @@ impl Translation<'_> {
         let a = self.get(a).v;
         let has_value = self.builder.ins().fcmp(FloatCC::Ordered, a, a);
         self.go_on_if(has_value, at);
-        let zero = self.builder.ins().f64const(0.0);
-        self.builder.ins().fcmp(FloatCC::NotEqual, a, zero)
-    }
-
-    /// Two operands, which must have values.
-    fn given(&mut self, a: Register, b: Register, at: usize) -> [Operand; 2] {
-        let (a, b) = (self.get(a), self.get(b));
-        let have_values = self.builder.ins().fcmp(FloatCC::Ordered, a.v, b.v);
-        self.go_on_if(have_values, at);
-        [a, b]
-    }
-
-    /// Sets a result that must be finite.
-    fn set_finite(&mut self, d: Register, result: Operand, at: usize) {
-        self.go_on_if_finite(result.v, at);
-        self.set(d, result);
+        is_true(&mut self.builder, a)
     }
 
     fn go_on_if_finite(&mut self, value: Value, at: usize) {
@@ -439,145 +354,24 @@ impl Translation<'_> {
                 let holds = self.decided(a, at);
                 self.go_on_if(holds, at);
             }
-            _ => self.arithmetic(at, instruction),
+            Instruction::Operation(operation) => self.operation(operation, at),
         }
     }
 
-    /// An instruction that computes one number from others.
-    fn arithmetic(&mut self, at: usize, instruction: &Instruction) {
-        match *instruction {
-            Instruction::Neg { d, a } => {
-                let a = self.get(a);
-                let v = self.builder.ins().fneg(a.v);
-                let tangent = a.d.map(|a| self.builder.ins().fneg(a));
-                self.set(d, Operand { v, d: tangent });
-            }
-            Instruction::Not { d, a } => {
-                let holds = self.decided(a, at);
-                let one = self.builder.ins().iconst(types::I8, 1);
-                let opposite = self.builder.ins().bxor(holds, one);
-                self.set_truth(d, opposite);
-            }
-            Instruction::Add { d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let sum = self.sum(a, b);
-                self.set(d, sum);
-            }
-            Instruction::Sub { d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let v = self.builder.ins().fsub(a.v, b.v);
-                let tangent = a.d.zip(b.d).map(|(a, b)| self.builder.ins().fsub(a, b));
-                self.set(d, Operand { v, d: tangent });
-            }
-            Instruction::Mul { d, a, b } => self.product(d, a, b),
-            Instruction::Div { d, a, b } => self.quotient(d, a, b, at),
-            Instruction::Relation { operator, d, a, b } => {
-                let [a, b] = self.given(a, b, at);
-                let holds = self.builder.ins().fcmp(condition(operator), a.v, b.v);
-                self.set_truth(d, holds);
-            }
-            Instruction::Unary { function, d, a } => self.unary(function, d, a, at),
-            Instruction::Pow { d, a, b } => {
-                let power = elementary::powf as fn(f64, f64) -> f64;
-                let dual = OnDuals { callee: dual_power as *const () as usize, function: 0 };
-                self.binary((power, dual), d, [a, b], at);
-            }
-            Instruction::Binary { function, d, a, b } => {
-                let FunctionValue::Binary(value) = function.value else { return self.leave(at) };
-                let function = std::ptr::from_ref(function) as usize;
-                let dual = OnDuals { callee: dual_binary as *const () as usize, function };
-                self.binary((value, dual), d, [a, b], at);
-            }
-            // The others compute nothing.
-            _ => self.leave(at),
+    /// Sets the value of an operation, whose operands must have values and which must be finite where
+    /// the interpreter asks for it.
+    fn operation(&mut self, operation: Operation, at: usize) {
+        let Operation { operator, d, a, b } = operation;
+        let (a, b) = (self.get(a), self.get(b));
+        if operator.hides_nan() {
+            let have_values = self.builder.ins().fcmp(FloatCC::Ordered, a.v, b.v);
+            self.go_on_if(have_values, at);
         }
-    }
-
-    fn sum(&mut self, a: Operand, b: Operand) -> Operand {
-        let v = self.builder.ins().fadd(a.v, b.v);
-        let d = a.d.zip(b.d).map(|(a, b)| self.builder.ins().fadd(a, b));
-        Operand { v, d }
-    }
-
-    fn product(&mut self, d: Register, a: Register, b: Register) {
-        let (a, b) = (self.get(a), self.get(b));
-        let v = self.builder.ins().fmul(a.v, b.v);
-        let tangent = a.d.zip(b.d).map(|(tangent_a, tangent_b)| {
-            let first = self.builder.ins().fmul(tangent_a, b.v);
-            let second = self.builder.ins().fmul(a.v, tangent_b);
-            self.builder.ins().fadd(first, second)
-        });
-        self.set(d, Operand { v, d: tangent });
-    }
-
-    fn quotient(&mut self, d: Register, a: Register, b: Register, at: usize) {
-        let (a, b) = (self.get(a), self.get(b));
-        let v = self.builder.ins().fdiv(a.v, b.v);
-        let tangent = a.d.zip(b.d).map(|(tangent_a, tangent_b)| {
-            let part = self.builder.ins().fmul(v, tangent_b);
-            let rest = self.builder.ins().fsub(tangent_a, part);
-            self.builder.ins().fdiv(rest, b.v)
-        });
-        self.set_finite(d, Operand { v, d: tangent }, at);
-    }
-
-    fn unary(&mut self, function: &'static Elementary, d: Register, a: Register, at: usize) {
-        let FunctionValue::Unary(value) = function.value else { return self.leave(at) };
-        let result = match self.parts {
-            1 => {
-                let a = self.get(a).v;
-                let v = match function.id.get().name {
-                    "sqrt" => self.builder.ins().sqrt(a),
-                    "abs" => self.builder.ins().fabs(a),
-                    _ => {
-                        let value = self.number(value as usize);
-                        self.call(unary as *const () as usize, self.callees.table[0], &[value, a])
-                    }
-                };
-                Operand { v, d: None }
-            }
-            _ => {
-                let function = self.number(std::ptr::from_ref(function) as usize);
-                let a = self.address(a);
-                self.on_duals(
-                    (dual_unary as *const () as usize, self.callees.dual[0]),
-                    &[function, a],
-                )
-            }
-        };
-        self.set_finite(d, result, at);
-    }
-
-    /// A function of two arguments, on values and on dual numbers.
-    fn binary(
-        &mut self,
-        (value, dual): (fn(f64, f64) -> f64, OnDuals),
-        d: Register,
-        [a, b]: [Register; 2],
-        at: usize,
-    ) {
-        let given = self.given(a, b, at);
-        let result = match self.parts {
-            1 => {
-                let value = self.number(value as usize);
-                let arguments = [value, given[0].v, given[1].v];
-                let callee = binary as *const () as usize;
-                Operand { v: self.call(callee, self.callees.table[1], &arguments), d: None }
-            }
-            _ => {
-                let arguments = [self.number(dual.function), self.address(a), self.address(b)];
-                self.on_duals((dual.callee, self.callees.dual[1]), &arguments)
-            }
-        };
-        self.set_finite(d, result, at);
-    }
-
-    /// The result of a function that writes it after its arguments.
-    fn on_duals(&mut self, (callee, signature): (usize, SigRef), arguments: &[Value]) -> Operand {
-        let result = self.builder.ins().stack_addr(self.pointer, self.result, 0);
-        let arguments = [arguments, &[result]].concat();
-        self.call_for_effect(callee, signature, &arguments);
-        self.read(result, 0)
+        let result = self.operations.operation(&mut self.builder, operator, a, b);
+        if operator.may_fail() {
+            self.go_on_if_finite(result.v, at);
+        }
+        self.set(d, result);
     }
 
     fn number(&mut self, number: usize) -> Value {
@@ -619,7 +413,7 @@ impl Translation<'_> {
         let offset = self.builder.ins().fmul(before, stride);
         let offset = self.constant(offset);
         let known = self.get(d);
-        let sum = self.sum(known, offset);
+        let sum = sum(&mut self.builder, known, offset);
         self.set(d, sum);
     }
 

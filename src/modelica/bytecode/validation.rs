@@ -5,6 +5,7 @@
 
 use super::code::{Code, Derivative, ExternalCall, Functions, Instruction};
 use super::machine::MAX_STACK;
+use crate::arithmetic::Operation;
 use crate::external::{Slot, SlotKind};
 
 impl Functions {
@@ -38,21 +39,12 @@ impl Functions {
             Instruction::Unassign { d: a, n } | Instruction::Check { a, n } => code.has(a, n),
             Instruction::Move { d, a, n } => code.has(d, n) && code.has(a, n),
             // Where an offset leads to is checked when it is known.
-            Instruction::Neg { d, a }
-            | Instruction::Not { d, a }
-            | Instruction::Offset { d, subscript: a, .. }
+            Instruction::Offset { d, subscript: a, .. }
             | Instruction::Load { d, offset: a, .. }
             | Instruction::Store { offset: d, a, .. } => all(&[d, a]),
-            Instruction::Unary { function, d, a } => function.id.get().arity() == 1 && all(&[d, a]),
-            Instruction::Binary { function, d, a, b } => {
-                function.id.get().arity() == 2 && all(&[d, a, b])
+            Instruction::Operation(Operation { operator, d, a, b }) => {
+                operator.is_valid() && all(&[d, a, b])
             }
-            Instruction::Add { d, a, b }
-            | Instruction::Sub { d, a, b }
-            | Instruction::Mul { d, a, b }
-            | Instruction::Div { d, a, b }
-            | Instruction::Pow { d, a, b }
-            | Instruction::Relation { d, a, b, .. } => all(&[d, a, b]),
             Instruction::Iterations { d, range } => all(&[d]) && code.has(range, 3),
             Instruction::Jump { .. } => true,
             Instruction::Call { function, d, a } => {

@@ -4,8 +4,8 @@
 //! takes the same branch: what the first computed is known there again. So an array that is set
 //! under one condition costs one computation of what its elements share, not one for each.
 
-use super::instruction::Register;
 use super::places::Places;
+use crate::arithmetic::Register;
 use crate::symbolic::Expr;
 use rustc_hash::FxHashMap;
 use std::hash::Hash;

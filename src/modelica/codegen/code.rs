@@ -1,8 +1,8 @@
 //! Pieces of compiled code: tapes with the registers of their results.
 
-use super::instruction::Register;
 use super::machine_code::MachineCode;
 use super::tape::Tape;
+use crate::arithmetic::Register;
 use crate::sim::Pattern;
 
 /// A step of solving for all variables, the states (or nothing, at the start) given.

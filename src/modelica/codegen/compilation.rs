@@ -8,7 +8,6 @@ use super::crossing_parts::crossing_parts;
 use super::event_code::{compile_events, linear_in_time, scheduled_in_time};
 use super::events::CompiledRounding;
 use super::hoist::Hoisting;
-use super::instruction::Register;
 use super::iteration_variables::IterationVariables;
 use super::jacobian::differentiate_sequence;
 use super::linearity::linearity;
@@ -26,6 +25,7 @@ use super::sequence::{
 use super::tape::Tape;
 use super::tape_builder::TapeBuilder;
 use super::unread::unread;
+use crate::arithmetic::Register;
 use crate::bytecode::Functions;
 use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::diag::Diagnostic;

@@ -1,7 +1,7 @@
 //! What happens at events, compiled. Data only.
 
 use super::code::{LogAssertion, Outputs, Step};
-use super::instruction::Register;
+use crate::arithmetic::Register;
 use crate::symbolic::VarId;
 
 /// The part of a program that acts at events alone.

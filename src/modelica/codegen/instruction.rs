@@ -1,10 +1,7 @@
 //! The instructions of tapes, and what they work on.
 
-use crate::symbolic::RelationOperator;
-use crate::symbolic::function::{FunctionId, Value};
-
-/// A register.
-pub(crate) type Register = u32;
+use crate::arithmetic::{Operation, Register};
+use crate::symbolic::function::Function;
 
 /// One instruction; `d` is the register written.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
@@ -13,70 +10,7 @@ pub(crate) enum Instruction {
         d: Register,
         a: Register,
     },
-    Neg {
-        d: Register,
-        a: Register,
-    },
-    Not {
-        d: Register,
-        a: Register,
-    },
-    Add {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Sub {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Mul {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Div {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Pow {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    And {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Or {
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Relation {
-        operator: RelationOperator,
-        d: Register,
-        a: Register,
-        b: Register,
-    },
-    Unary {
-        id: FunctionId,
-        d: Register,
-        a: Register,
-        #[serde(skip, default = "unlinked")]
-        function: fn(f64) -> f64,
-    },
-    Binary {
-        id: FunctionId,
-        d: Register,
-        a: Register,
-        b: Register,
-        #[serde(skip, default = "unlinked_binary")]
-        function: fn(f64, f64) -> f64,
-    },
+    Operation(Operation),
     /// The call of this number in the tape.
     Call {
         call: u32,
@@ -110,34 +44,17 @@ pub(crate) enum Instruction {
     },
 }
 
-/// In place of a function until [`Instruction::linked`].
-fn unlinked() -> fn(f64) -> f64 {
-    |_| f64::NAN
-}
-
-/// In place of a function until [`Instruction::linked`].
-fn unlinked_binary() -> fn(f64, f64) -> f64 {
-    |_, _| f64::NAN
+impl From<Operation> for Instruction {
+    fn from(operation: Operation) -> Instruction {
+        Instruction::Operation(operation)
+    }
 }
 
 impl Instruction {
-    /// An instruction read from a file with the function that it calls.
-    fn linked(self) -> Instruction {
-        match (self, self.function().map(|id| id.get().value)) {
-            (Instruction::Unary { id, d, a, .. }, Some(Value::Unary(function))) => {
-                Instruction::Unary { id, d, a, function }
-            }
-            (Instruction::Binary { id, d, a, b, .. }, Some(Value::Binary(function))) => {
-                Instruction::Binary { id, d, a, b, function }
-            }
-            (other, _) => other,
-        }
-    }
-
     /// The mathematical function that it calls.
-    pub(super) fn function(self) -> Option<FunctionId> {
+    pub(super) fn function(&self) -> Option<&'static Function> {
         match self {
-            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Some(id),
+            Instruction::Operation(operation) => operation.operator.function(),
             _ => None,
         }
     }
@@ -146,20 +63,9 @@ impl Instruction {
     pub(super) fn for_each_operand(&self, mut visit: impl FnMut(Register)) {
         match *self {
             Instruction::Move { a, .. }
-            | Instruction::Neg { a, .. }
-            | Instruction::Not { a, .. }
-            | Instruction::Unary { a, .. }
             | Instruction::Given { a, .. }
             | Instruction::JumpUnless { a, .. } => visit(a),
-            Instruction::Add { a, b, .. }
-            | Instruction::Sub { a, b, .. }
-            | Instruction::Mul { a, b, .. }
-            | Instruction::Div { a, b, .. }
-            | Instruction::Pow { a, b, .. }
-            | Instruction::And { a, b, .. }
-            | Instruction::Or { a, b, .. }
-            | Instruction::Relation { a, b, .. }
-            | Instruction::Binary { a, b, .. } => {
+            Instruction::Operation(Operation { a, b, .. }) => {
                 visit(a);
                 visit(b);
             }
@@ -175,19 +81,8 @@ impl Instruction {
     pub(super) fn result(&self) -> Option<Register> {
         match *self {
             Instruction::Move { d, .. }
-            | Instruction::Neg { d, .. }
-            | Instruction::Not { d, .. }
-            | Instruction::Unary { d, .. }
-            | Instruction::Add { d, .. }
-            | Instruction::Sub { d, .. }
-            | Instruction::Mul { d, .. }
-            | Instruction::Div { d, .. }
-            | Instruction::Pow { d, .. }
-            | Instruction::And { d, .. }
-            | Instruction::Or { d, .. }
-            | Instruction::Relation { d, .. }
-            | Instruction::Given { d, .. }
-            | Instruction::Binary { d, .. } => Some(d),
+            | Instruction::Operation(Operation { d, .. })
+            | Instruction::Given { d, .. } => Some(d),
             Instruction::Call { .. }
             | Instruction::Solve { .. }
             | Instruction::Jump { .. }
@@ -228,12 +123,4 @@ pub(super) struct LinearSolve {
     pub(super) d: Register,
     /// Whether b need not fit to a singular A.
     pub(super) is_derivative: bool,
-}
-
-/// Instructions from a file, with the functions that they call.
-pub(super) fn read_linked<'de, D: serde::Deserializer<'de>>(
-    source: D,
-) -> Result<Vec<Instruction>, D::Error> {
-    let read: Vec<Instruction> = serde::Deserialize::deserialize(source)?;
-    Ok(read.into_iter().map(Instruction::linked).collect())
 }

@@ -16,7 +16,7 @@
 //! §8.6.3).
 
 use super::instruction::LinearSolve;
-use crate::codegen::instruction::Register;
+use crate::arithmetic::Register;
 use crate::elementary;
 use crate::sim::DenseLu;
 

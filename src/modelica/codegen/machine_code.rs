@@ -10,12 +10,12 @@
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use super::instruction::Register;
 use super::memory::Memory;
 use super::pieces::{Piece, pieces};
 use super::routines::without_routines;
 use super::translation::{Matrices, Part, translate};
 use super::upcalls::{Upcalls, Workspaces};
+use crate::arithmetic::Register;
 use crate::bytecode::Functions;
 use crate::codegen::tape::Tape;
 use crate::jit::{self, Effort, Executable};

@@ -4,9 +4,10 @@
 //! function, so that long tapes become several. A piece leaves what later ones read in the
 //! registers of the memory, as the tape does when it is interpreted.
 
-use super::instruction::{Instruction, Register};
+use super::instruction::Instruction;
 use super::tape::Tape;
 use super::upcalls::Upcalls;
+use crate::arithmetic::Register;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
 
@@ -120,9 +121,10 @@ fn counted_from(first: u32, mut instruction: Instruction) -> Instruction {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arithmetic::{Operation, Operator};
 
     fn add(d: Register, a: Register) -> Instruction {
-        Instruction::Add { d, a, b: a }
+        Operation::binary(Operator::Add, d, a, a).into()
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! kept from tape to tape. Of heat conduction with 100,000 states, a map made for each tape took a
 //! tenth of the translation.
 
-use super::instruction::Register;
+use crate::arithmetic::Register;
 use crate::symbolic::Expr;
 
 /// The registers of the expressions that a tape has computed outside of its branches.

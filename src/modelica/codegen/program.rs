@@ -2,9 +2,9 @@
 
 use super::code::{Assertions, CrossingPart};
 use super::events::Events;
-use super::instruction::Register;
 use super::registers::Registers;
 use super::tape::Tape;
+use crate::arithmetic::Register;
 use crate::causalize::{Assignment, CausalizedDae};
 use crate::codegen::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
 use crate::flatten::{BaseType, Variability};
@@ -227,8 +227,8 @@ impl Program {
     /// Whether the right-hand side calls functions whose derivatives jump where there is no event.
     pub(crate) fn has_kinks(&self) -> bool {
         let tape = &self.continuous.rhs.tape;
-        let mut of_table = tape.code.iter().filter_map(|own| own.function());
-        of_table.any(|id| id.get().is_kinked)
+        let mut functions = tape.code.iter().filter_map(|own| own.function());
+        functions.any(|function| function.is_kinked)
             || tape.calls.iter().any(|call| self.sorted.dae.functions.has_kinks(call.function))
     }
 

@@ -4,9 +4,10 @@
 //! the writer of a register need not stand on every way to its readers. Code that keeps values in
 //! registers of the machine must know which these are.
 
-use super::instruction::{Instruction, LinearSolve, Register};
+use super::instruction::{Instruction, LinearSolve};
 use super::tape::Tape;
 use super::upcalls::Upcalls;
+use crate::arithmetic::Register;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The registers that are written in a branch and read outside of it, or written in several. The

@@ -1,13 +1,11 @@
 //! The registers of a program, and what is computed in them once a simulation.
 
-use super::instruction::{Instruction, Register};
 use super::places::Places;
 use super::tape::Tape;
+use crate::arithmetic::{Operator, Register};
 use crate::bytecode::Functions;
-use crate::symbolic::function::FunctionId;
-use crate::symbolic::{Expr, RelationOperator};
+use crate::symbolic::Expr;
 use rustc_hash::FxHashMap;
-use std::mem::Discriminant;
 use std::sync::Arc;
 
 /// The registers of a program: one for every variable, then constants and temporaries.
@@ -116,24 +114,13 @@ impl Registers {
     }
 }
 
-/// Operation, function or relation, operands.
-pub(super) type Key = (Discriminant<Instruction>, Which, Register, Register);
-
-/// Which of its kind an operation is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Which {
-    Only,
-    Function(FunctionId),
-    Relation(RelationOperator),
-}
-
 /// The instructions moved.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Hoisted {
     pub(crate) tape: Tape,
     /// Only saves work in programs that are compiled for the same registers later.
     #[serde(skip)]
-    pub(super) results: FxHashMap<Key, Register>,
+    pub(super) results: FxHashMap<(Operator, Register, Register), Register>,
     pub(super) fixed: Vec<bool>,
 }
 

@@ -5,8 +5,9 @@
 //! perform, and that runs at most once in a run of the tape. Otherwise a chain of functions with
 //! such branches, as media have, would be written as often as there are ways through it.
 
-use super::instruction::{Instruction, Register};
+use super::instruction::Instruction;
 use super::tape::Tape;
+use crate::arithmetic::Register;
 use crate::symbolic::Expr;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -156,6 +157,7 @@ fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arithmetic::{Operation, Operator};
     use crate::bytecode::Functions;
     use crate::codegen::code::Outputs;
     use crate::codegen::hoist::Hoisting;
@@ -242,7 +244,9 @@ mod tests {
         };
         let elements: Vec<Expr> = (0..10).map(&mut element).collect();
         let (code, _) = compiled(&pool, &elements);
-        let is_root = |i: &&Instruction| matches!(i, Instruction::Unary { .. });
+        let is_root = |i: &&Instruction| {
+            matches!(i, Instruction::Operation(Operation { operator: Operator::Unary(_), .. }))
+        };
         assert_eq!(code.tape.code.iter().filter(is_root).count(), 1);
     }
 

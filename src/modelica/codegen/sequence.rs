@@ -2,12 +2,12 @@
 
 use super::code::{CompiledLoop, CompiledRun, Outputs, Step};
 use super::hoist::Hoisting;
-use super::instruction::Register;
 use super::jacobian::differentiate_sequence;
 use super::machine_code::MachineCode;
 use super::program::{Access, Program};
 use super::registers::Registers;
 use super::tape_builder::TapeBuilder;
+use crate::arithmetic::Register;
 use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::lower::VariableKind;
 use crate::sim::Pattern;

@@ -7,14 +7,13 @@
 
 use super::instruction::LinearSolve;
 use super::memory::Memory;
+use crate::arithmetic::{Operation, Register};
 use crate::bytecode::Functions;
-use crate::codegen::instruction::{Call, Instruction, Register};
-use crate::elementary;
+use crate::codegen::instruction::{Call, Instruction};
 
 /// A sequence of instructions.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Tape {
-    #[serde(deserialize_with = "super::instruction::read_linked")]
     pub(crate) code: Vec<Instruction>,
     pub(super) calls: Vec<Call>,
     pub(super) solves: Vec<LinearSolve>,
@@ -57,41 +56,16 @@ impl Tape {
             at += 1;
             match *instruction {
                 Instruction::Move { d, a } => r[d as usize] = r[a as usize],
-                Instruction::Neg { d, a } => r[d as usize] = -r[a as usize],
-                Instruction::Not { d, a } => {
-                    r[d as usize] = f64::from(u8::from(r[a as usize] == 0.0));
-                }
-                Instruction::Add { d, a, b } => r[d as usize] = r[a as usize] + r[b as usize],
-                Instruction::Sub { d, a, b } => r[d as usize] = r[a as usize] - r[b as usize],
-                Instruction::Mul { d, a, b } => r[d as usize] = r[a as usize] * r[b as usize],
-                Instruction::Div { d, a, b } => {
-                    finite(r, d, r_of(a, b, |x, y| x / y), at)?;
-                }
-                Instruction::Pow { d, a, b } => finite(r, d, r_of(a, b, elementary::powf), at)?,
-                Instruction::And { d, a, b } => {
-                    let both = r[a as usize] != 0.0 && r[b as usize] != 0.0;
-                    r[d as usize] = f64::from(u8::from(both));
-                }
-                Instruction::Or { d, a, b } => {
-                    let any = r[a as usize] != 0.0 || r[b as usize] != 0.0;
-                    r[d as usize] = f64::from(u8::from(any));
-                }
-                Instruction::Relation { operator, d, a, b } => {
-                    let holds = operator.holds(r[a as usize], r[b as usize]);
-                    r[d as usize] = f64::from(u8::from(holds));
-                }
-                Instruction::Unary { id, d, a, function } => {
-                    let value = function(r[a as usize]);
-                    if !value.is_finite() {
-                        if !(r[a as usize].is_finite() && id.get().overflows) {
+                Instruction::Operation(operation) => {
+                    let value = operation.value(r);
+                    let Operation { operator, d, a, .. } = operation;
+                    if operator.may_fail() && !value.is_finite() {
+                        if !operator.overflows_at(r[a as usize]) {
                             return Err(at as u32 - 1);
                         }
                         overflow.get_or_insert(at as u32 - 1);
                     }
                     r[d as usize] = value;
-                }
-                Instruction::Binary { d, a, b, function, .. } => {
-                    finite(r, d, r_of(a, b, function), at)?;
                 }
                 Instruction::Call { call } => {
                     let call = &self.calls[call as usize];
@@ -141,20 +115,4 @@ impl Tape {
         let position = self.origins.partition_point(|(first, _)| *first <= at);
         position.checked_sub(1).map_or(u32::MAX, |position| self.origins[position].1)
     }
-}
-
-/// An operation on two registers.
-fn r_of(a: Register, b: Register, operation: impl Fn(f64, f64) -> f64) -> impl Fn(&[f64]) -> f64 {
-    move |r| operation(r[a as usize], r[b as usize])
-}
-
-/// Writes a value that must be finite.
-#[inline(always)]
-fn finite(r: &mut [f64], d: Register, value: impl Fn(&[f64]) -> f64, at: usize) -> Result<(), u32> {
-    let value = value(r);
-    if !value.is_finite() {
-        return Err(at as u32 - 1);
-    }
-    r[d as usize] = value;
-    Ok(())
 }

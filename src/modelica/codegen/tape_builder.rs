@@ -2,11 +2,11 @@
 
 use super::branches::{Branches, Computed, ComputedExpressions};
 use super::hoist::Hoisting;
-use super::instruction::{Call, Instruction, LinearSolve, Register};
+use super::instruction::{Call, Instruction, LinearSolve};
 use super::routines::{Routine, Routines};
 use super::tape::Tape;
+use crate::arithmetic::{Elementary, Operation, Operator, Register};
 use crate::codegen::registers::Registers;
-use crate::symbolic::function::Value;
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -179,33 +179,43 @@ impl<'a> TapeBuilder<'a> {
             }
             _ => {}
         }
+        let operation = self.operation(node);
+        let in_branch = self.branches.is_inside();
+        match self.registers.hoist(operation, self.hoisting, in_branch, self.origin) {
+            Some(hoisted) => hoisted,
+            None => {
+                self.tape.code.push(operation.into());
+                self.registers.fresh()
+            }
+        }
+    }
+
+    /// The operation that a node is, on operands that have been computed, to the next new register.
+    fn operation(&self, node: &Node) -> Operation {
         let d = self.registers.len() as Register;
-        let instruction = match node {
-            Node::Neg(a) => Instruction::Neg { d, a: of(a) },
-            Node::Not(a) => Instruction::Not { d, a: of(a) },
-            Node::Add(a, b) => Instruction::Add { d, a: of(a), b: of(b) },
-            Node::Sub(a, b) => Instruction::Sub { d, a: of(a), b: of(b) },
-            Node::Mul(a, b) => Instruction::Mul { d, a: of(a), b: of(b) },
-            Node::Div(a, b) => Instruction::Div { d, a: of(a), b: of(b) },
+        let unary = |operator, a: &Expr| Operation::unary(operator, d, self.register(*a));
+        let binary = |operator, a: &Expr, b: &Expr| {
+            Operation::binary(operator, d, self.register(*a), self.register(*b))
+        };
+        match node {
+            Node::Neg(a) => unary(Operator::Neg, a),
+            Node::Not(a) => unary(Operator::Not, a),
+            Node::Add(a, b) => binary(Operator::Add, a, b),
+            Node::Sub(a, b) => binary(Operator::Sub, a, b),
+            Node::Mul(a, b) => binary(Operator::Mul, a, b),
+            Node::Div(a, b) => binary(Operator::Div, a, b),
             Node::Pow(a, b) if self.pool.as_constant(*b) == Some(2.0) => {
-                Instruction::Mul { d, a: of(a), b: of(a) }
+                binary(Operator::Mul, a, a)
             }
-            Node::Pow(a, b) => Instruction::Pow { d, a: of(a), b: of(b) },
-            Node::And(a, b) => Instruction::And { d, a: of(a), b: of(b) },
-            Node::Or(a, b) => Instruction::Or { d, a: of(a), b: of(b) },
-            Node::Relation(operator, a, b) => {
-                Instruction::Relation { operator: *operator, d, a: of(a), b: of(b) }
-            }
+            Node::Pow(a, b) => binary(Operator::Pow, a, b),
+            Node::And(a, b) => binary(Operator::And, a, b),
+            Node::Or(a, b) => binary(Operator::Or, a, b),
+            Node::Relation(operator, a, b) => binary(Operator::Relation(*operator), a, b),
             Node::Apply(id, arguments) => {
-                let a = of(&arguments.first());
-                match (id.get().value, arguments.second()) {
-                    (Value::Unary(function), _) => Instruction::Unary { id: *id, d, a, function },
-                    (Value::Binary(function), Some(b)) => {
-                        Instruction::Binary { id: *id, d, a, b: of(&b), function }
-                    }
-                    (Value::Binary(_), None) => {
-                        unreachable!("a pool checks the number of arguments")
-                    }
+                let (function, a) = (Elementary::of(*id), arguments.first());
+                match arguments.second() {
+                    None => unary(Operator::Unary(function), &a),
+                    Some(b) => binary(Operator::Binary(function), &a, &b),
                 }
             }
             Node::Constant(_)
@@ -214,15 +224,7 @@ impl<'a> TapeBuilder<'a> {
             | Node::Call { .. }
             | Node::CallDerivative { .. }
             | Node::List(_)
-            | Node::Solution { .. } => unreachable!("returned above"),
-        };
-        let in_branch = self.branches.is_inside();
-        match self.registers.hoist(instruction, self.hoisting, in_branch, self.origin) {
-            Some(hoisted) => hoisted,
-            None => {
-                self.tape.code.push(instruction);
-                self.registers.fresh()
-            }
+            | Node::Solution { .. } => unreachable!("not an operation"),
         }
     }
 

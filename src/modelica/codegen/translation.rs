@@ -5,14 +5,13 @@
 //! it returns, is zero if all were finite. Calls of functions and linear systems that need a
 //! workspace are [upcalls](super::upcalls), which are only made while all values are finite.
 
-use super::instruction::{Instruction, LinearSolve, Register};
+use super::instruction::{Instruction, LinearSolve};
 use super::linear_system::{MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::regions::shared_by_branches;
 use super::tape::Tape;
 use super::upcalls::{self, Upcalls};
-use crate::elementary;
-use crate::jit::{binary, condition, unary};
-use crate::symbolic::function::FunctionId;
+use crate::arithmetic::translation::{Operand, Translator, is_true};
+use crate::arithmetic::{Operation, Register};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
@@ -61,6 +60,7 @@ pub(super) fn translate(
     builder.seal_block(start);
     let parameters = builder.block_params(start);
     let (memory, out, workspaces) = (parameters[0], parameters[1], parameters[2]);
+    let operations = Translator::new(&mut builder, target, 1);
     let signatures = signatures(&mut builder, target);
     let array = (upcalls.room() > 0).then(|| array_of(upcalls.room(), &mut builder));
     let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
@@ -83,6 +83,7 @@ pub(super) fn translate(
         blocks: FxHashMap::default(),
         matrices,
         places: FxHashMap::default(),
+        operations,
         signatures,
         checks,
         next_check: 0,
@@ -106,16 +107,9 @@ fn array_of(length: usize, builder: &mut FunctionBuilder) -> StackSlot {
     builder.create_sized_stack_slot(slot)
 }
 
-/// The signatures of functions with one and two arguments, of [`small_system`], and of the upcalls.
+/// The signatures of [`small_system`] and of the upcalls.
 fn signatures(builder: &mut FunctionBuilder, target: TargetFrontendConfig) -> Signatures {
     let pointer = target.pointer_type();
-    let functions = [1, 2].map(|arity| {
-        let mut signature = Signature::new(target.default_call_conv);
-        signature.params.push(AbiParam::new(pointer));
-        signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
-        signature.returns.push(AbiParam::new(types::F64));
-        builder.import_signature(signature)
-    });
     let mut signature = Signature::new(target.default_call_conv);
     signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
     let elimination = builder.import_signature(signature);
@@ -125,7 +119,7 @@ fn signatures(builder: &mut FunctionBuilder, target: TargetFrontendConfig) -> Si
         signature.returns.push(AbiParam::new(types::F64));
         builder.import_signature(signature)
     });
-    Signatures { functions, elimination, asking }
+    Signatures { elimination, asking }
 }
 
 /// Room for A by rows and b after it.
@@ -167,6 +161,7 @@ struct Translation<'a> {
     matrices: &'a mut Matrices,
     /// Where registers are written to that are outputs.
     places: FxHashMap<Register, Vec<usize>>,
+    operations: Translator,
     signatures: Signatures,
     checks: [Variable; CHECKS],
     next_check: usize,
@@ -174,8 +169,6 @@ struct Translation<'a> {
 
 /// Signatures of the functions that code calls.
 struct Signatures {
-    /// Signatures of functions with one and two arguments.
-    functions: [SigRef; 2],
     /// The signature of [`small_system`].
     elimination: SigRef,
     /// The signatures of the upcalls: of linear systems, of functions.
@@ -278,75 +271,13 @@ impl Translation<'_> {
         self.set(d, value);
     }
 
-    /// Sets 1 or 0.
-    fn set_truth(&mut self, d: Register, holds: Value) {
-        let one = self.builder.ins().f64const(1.0);
-        let zero = self.builder.ins().f64const(0.0);
-        let value = self.builder.ins().select(holds, one, zero);
-        self.set(d, value);
-    }
-
-    fn is_true(&mut self, a: Register) -> Value {
-        let a = self.get(a);
-        let zero = self.builder.ins().f64const(0.0);
-        self.builder.ins().fcmp(FloatCC::NotEqual, a, zero)
-    }
-
     fn instruction(&mut self, instruction: Instruction) -> Option<()> {
         match instruction {
             Instruction::Move { d, a } => {
                 let a = self.get(a);
                 self.builder.def_var(self.chosen[&d], a);
             }
-            Instruction::Neg { d, a } => {
-                let a = self.get(a);
-                let value = self.builder.ins().fneg(a);
-                self.set(d, value);
-            }
-            Instruction::Not { d, a } => {
-                let a = self.get(a);
-                let zero = self.builder.ins().f64const(0.0);
-                let holds = self.builder.ins().fcmp(FloatCC::Equal, a, zero);
-                self.set_truth(d, holds);
-            }
-            Instruction::Add { d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let value = self.builder.ins().fadd(a, b);
-                self.set(d, value);
-            }
-            Instruction::Sub { d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let value = self.builder.ins().fsub(a, b);
-                self.set(d, value);
-            }
-            Instruction::Mul { d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let value = self.builder.ins().fmul(a, b);
-                self.set(d, value);
-            }
-            Instruction::Div { d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let value = self.builder.ins().fdiv(a, b);
-                self.set_checked(d, value);
-            }
-            Instruction::Pow { d, a, b } => self.call_binary(d, a, b, elementary::powf),
-            Instruction::And { d, a, b } => {
-                let (a, b) = (self.is_true(a), self.is_true(b));
-                let holds = self.builder.ins().band(a, b);
-                self.set_truth(d, holds);
-            }
-            Instruction::Or { d, a, b } => {
-                let (a, b) = (self.is_true(a), self.is_true(b));
-                let holds = self.builder.ins().bor(a, b);
-                self.set_truth(d, holds);
-            }
-            Instruction::Relation { operator, d, a, b } => {
-                let (a, b) = (self.get(a), self.get(b));
-                let holds = self.builder.ins().fcmp(condition(operator), a, b);
-                self.set_truth(d, holds);
-            }
-            Instruction::Unary { id, d, a, function } => self.call_unary(id, d, a, function),
-            Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
+            Instruction::Operation(operation) => self.operation(operation),
             Instruction::Perform { .. } | Instruction::Return { .. } => return None,
             Instruction::Call { call } => self.ask_for_call(call),
             Instruction::Given { d, a, is_zero, .. } => {
@@ -372,7 +303,8 @@ impl Translation<'_> {
                 }
             },
             Instruction::JumpUnless { a, target } => {
-                let holds = self.is_true(a);
+                let a = self.get(a);
+                let holds = is_true(&mut self.builder, a);
                 let next = self.builder.create_block();
                 let target = self.blocks[&(target as usize)];
                 self.builder.ins().brif(holds, next, &[], target, &[]);
@@ -387,42 +319,14 @@ impl Translation<'_> {
         Some(())
     }
 
-    fn call_unary(&mut self, id: FunctionId, d: Register, a: Register, function: fn(f64) -> f64) {
-        let a = self.get(a);
-        let value = match id.get().name {
-            "sqrt" => self.builder.ins().sqrt(a),
-            "abs" => self.builder.ins().fabs(a),
-            _ => {
-                let callee = self.address(unary as *const () as usize);
-                let function = self.address(function as usize);
-                let call = self.builder.ins().call_indirect(
-                    self.signatures.functions[0],
-                    callee,
-                    &[function, a],
-                );
-                self.builder.inst_results(call)[0]
-            }
-        };
-        self.set_checked(d, value);
-    }
-
-    fn call_binary(
-        &mut self,
-        d: Register,
-        a: Register,
-        b: Register,
-        function: fn(f64, f64) -> f64,
-    ) {
-        let (a, b) = (self.get(a), self.get(b));
-        let callee = self.address(binary as *const () as usize);
-        let function = self.address(function as usize);
-        let call = self.builder.ins().call_indirect(
-            self.signatures.functions[1],
-            callee,
-            &[function, a, b],
-        );
-        let value = self.builder.inst_results(call)[0];
-        self.set_checked(d, value);
+    fn operation(&mut self, operation: Operation) {
+        let Operation { operator, d, a, b } = operation;
+        let [a, b] = [a, b].map(|register| Operand { v: self.get(register), d: None });
+        let value = self.operations.operation(&mut self.builder, operator, a, b).v;
+        match operator.may_fail() {
+            true => self.set_checked(d, value),
+            false => self.set(d, value),
+        }
     }
 
     fn address(&mut self, address: usize) -> Value {

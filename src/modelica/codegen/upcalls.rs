@@ -7,10 +7,11 @@
 
 #![allow(unsafe_code, reason = "machine code hands over the array as a pointer")]
 
-use super::instruction::{Call, Instruction, LinearSolve, Register};
+use super::instruction::{Call, Instruction, LinearSolve};
 use super::linear_system::{LinearSystem, MOST_SMALL};
 use super::memory::{Calls, Memory};
 use super::tape::Tape;
+use crate::arithmetic::Register;
 use crate::bytecode::Functions;
 
 /// An array on the stack has at most so many numbers: threads have stacks of 2 MB at least.

@@ -7,10 +7,11 @@
 
 use super::code::{CompiledLoop, CompiledSelection, LogAssertion, Outputs, Step};
 use super::events::{CompiledTransport, Events};
-use super::instruction::{Call, Instruction, LinearSolve, Register};
+use super::instruction::{Call, Instruction, LinearSolve};
 use super::program::{Access, Program};
 use super::registers::Registers;
 use super::tape::Tape;
+use crate::arithmetic::Register;
 use crate::bytecode::Functions;
 use crate::lower::{Dae, Recording};
 use crate::sim::Pattern;
@@ -82,8 +83,7 @@ impl Tape {
             Instruction::Call { call } => (call as usize) < self.calls.len(),
             Instruction::Solve { solve } => (solve as usize) < self.solves.len(),
             Instruction::Given { function, .. } => limits.has_function(function),
-            Instruction::Unary { id, .. } => id.get().arity() == 1,
-            Instruction::Binary { id, .. } => id.get().arity() == 2,
+            Instruction::Operation(operation) => operation.operator.is_valid(),
             Instruction::Perform { link, .. } | Instruction::Return { link } => limits.has(link, 1),
             _ => true,
         };

@@ -1,7 +1,7 @@
 //! In place of machine code where the feature `jit` is left out: tapes are always interpreted.
 
-use super::instruction::Register;
 use super::memory::Memory;
+use crate::arithmetic::Register;
 use crate::codegen::tape::Tape;
 
 /// The machine code that a tape never gets.

@@ -1,11 +1,9 @@
-//! What all translations to machine code share: the module that holds the code, functions of this
-//! process that the code calls, and the switch that disables them.
+//! What all translations to machine code share: the module that holds the code, and the switch that
+//! disables them.
 
 #![allow(unsafe_code, reason = "the memory of machine code is freed by hand")]
 
-use crate::symbolic::RelationOperator;
 use cranelift_codegen::Context;
-use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
@@ -94,29 +92,5 @@ impl Drop for Executable {
             // SAFETY: who calls the code keeps this beside its address.
             unsafe { module.free_memory() };
         }
-    }
-}
-
-/// Calls a function of the table.
-#[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
-pub(crate) extern "C" fn unary(function: fn(f64) -> f64, a: f64) -> f64 {
-    function(a)
-}
-
-/// Calls a function of the table.
-#[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
-pub(crate) extern "C" fn binary(function: fn(f64, f64) -> f64, a: f64, b: f64) -> f64 {
-    function(a, b)
-}
-
-/// The comparison that a relation makes.
-pub(crate) fn condition(operator: RelationOperator) -> FloatCC {
-    match operator {
-        RelationOperator::Less => FloatCC::LessThan,
-        RelationOperator::LessEqual => FloatCC::LessThanOrEqual,
-        RelationOperator::Greater => FloatCC::GreaterThan,
-        RelationOperator::GreaterEqual => FloatCC::GreaterThanOrEqual,
-        RelationOperator::Equal => FloatCC::Equal,
-        RelationOperator::NotEqual => FloatCC::NotEqual,
     }
 }

@@ -2,7 +2,7 @@
 //! whose symbolic derivative there is 0/0. The functions themselves have values, and a quotient
 //! over a short distance is a Jacobian entry with which Newton's method continues.
 
-use super::execution::Operation;
+use super::execution::FailedOperation;
 use crate::sim::Failure;
 
 /// Length of the way relative to the size of the variable: between rounding errors of the function
@@ -31,6 +31,6 @@ pub fn quotient(
     column.iter_mut().zip(before).for_each(|(after, before)| *after = (*after - before) / step);
     match column.iter().all(|entry| entry.is_finite()) {
         true => Ok(()),
-        false => Err(Failure::Domain { origin: u32::MAX, operation: Operation::OTHER }),
+        false => Err(Failure::Domain { origin: u32::MAX, operation: FailedOperation::OTHER }),
     }
 }

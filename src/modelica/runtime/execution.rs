@@ -1,13 +1,14 @@
 //! Execution of code on the registers of a system, with failures that say which operation of which
 //! equation failed.
 
+use crate::arithmetic::{Operation, Operator};
 use crate::codegen::code::{CompiledLoop, CompiledRun, Outputs};
 use crate::codegen::instruction::Instruction;
 use crate::codegen::memory::Memory;
 use crate::codegen::tape::Tape;
 use crate::sim::Failure;
 use crate::symbolic::VarId;
-use crate::symbolic::function::{self, Function, FunctionId};
+use crate::symbolic::function::{self, Function};
 
 /// Computes the outputs of code that computes nothing else.
 pub fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
@@ -28,7 +29,7 @@ pub fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(
 
 /// The operation that had no value, and its number in a [`Failure::Domain`].
 #[derive(Debug, Clone, Copy)]
-pub enum Operation {
+pub enum FailedOperation {
     /// A division, or another operation that overflowed.
     Division,
     /// A power.
@@ -39,27 +40,35 @@ pub enum Operation {
     Other,
 }
 
-impl Operation {
+impl FailedOperation {
     pub(crate) const DIVISION: u32 = 0;
     pub const POWER: u32 = 1;
     pub const OTHER: u32 = u32::MAX;
     /// The number of the first function.
     const FUNCTIONS: u32 = 2;
 
-    /// The number of a function of the table.
-    fn number(id: FunctionId) -> u32 {
-        let at = function::functions().position(|(known, _)| known == id);
-        at.map_or(Operation::OTHER, |at| Operation::FUNCTIONS + at as u32)
+    /// The number of an operator that failed.
+    fn of_operator(operator: Operator) -> u32 {
+        match operator {
+            Operator::Pow => FailedOperation::POWER,
+            Operator::Unary(function) | Operator::Binary(function) => {
+                let at = function::functions().position(|(known, _)| known == function.id);
+                at.map_or(FailedOperation::OTHER, |at| FailedOperation::FUNCTIONS + at as u32)
+            }
+            _ => FailedOperation::DIVISION,
+        }
     }
 
     /// The operation of a number.
-    pub fn of(number: u32) -> Operation {
+    pub fn of(number: u32) -> FailedOperation {
         match number {
-            Operation::DIVISION => Operation::Division,
-            Operation::POWER => Operation::Power,
+            FailedOperation::DIVISION => FailedOperation::Division,
+            FailedOperation::POWER => FailedOperation::Power,
             _ => function::functions()
-                .nth((number - Operation::FUNCTIONS) as usize)
-                .map_or(Operation::Other, |(_, function)| Operation::Function(function)),
+                .nth((number - FailedOperation::FUNCTIONS) as usize)
+                .map_or(FailedOperation::Other, |(_, function)| {
+                    FailedOperation::Function(function)
+                }),
         }
     }
 }
@@ -119,12 +128,14 @@ pub(crate) fn run_parameter(
 /// The failure of an instruction.
 fn failure(tape: &Tape, registers: &Memory, at: u32) -> Failure {
     let operation = match tape.code[at as usize] {
-        Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Operation::number(id),
+        Instruction::Operation(Operation { operator, .. }) => {
+            FailedOperation::of_operator(operator)
+        }
         Instruction::Call { .. } => {
             if let Some(failure) = &registers.calls.failure {
                 return failure.into();
             }
-            Operation::DIVISION
+            FailedOperation::DIVISION
         }
         Instruction::Given { function, .. } => {
             return Failure::Function {
@@ -133,8 +144,7 @@ fn failure(tape: &Tape, registers: &Memory, at: u32) -> Failure {
                 reason: crate::bytecode::Reason::Unassigned as u8,
             };
         }
-        Instruction::Pow { .. } => Operation::POWER,
-        _ => Operation::DIVISION,
+        _ => FailedOperation::DIVISION,
     };
     Failure::Domain { origin: tape.origin(at), operation }
 }

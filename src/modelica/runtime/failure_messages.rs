@@ -1,6 +1,6 @@
 //! Failures of simulations in the model's words: time, variables and places.
 
-use super::execution::Operation;
+use super::execution::FailedOperation;
 use crate::bytecode::{self, Reason};
 use crate::causalize::Block;
 use crate::codegen::errors::{
@@ -16,14 +16,14 @@ use crate::symbolic::VarId;
 use crate::symbolic::function::Function;
 
 /// What an operation has failed with.
-fn why(operation: Operation) -> String {
+fn why(operation: FailedOperation) -> String {
     match operation {
-        Operation::Division => "a division by zero or an overflow of a division".to_owned(),
-        Operation::Power => "a power without a finite result".to_owned(),
-        Operation::Function(function) => {
+        FailedOperation::Division => "a division by zero or an overflow of a division".to_owned(),
+        FailedOperation::Power => "a power without a finite result".to_owned(),
+        FailedOperation::Function(function) => {
             format!("`{}` has no value: {}", function.name, domain(function))
         }
-        Operation::Other => "an operation without a finite result".to_owned(),
+        FailedOperation::Other => "an operation without a finite result".to_owned(),
     }
 }
 
@@ -127,8 +127,8 @@ impl Program {
     /// That the variable of an equation has no value, and why.
     pub(super) fn failed_value(&self, origin: u32, operation: u32, when: &str) -> String {
         let variable = self.variable_of(origin).map(|v| &*self.sorted.dae.variable(v).name);
-        match (variable.filter(|name| !name.starts_with('$')), Operation::of(operation)) {
-            (Some(name), Operation::Function(function)) => {
+        match (variable.filter(|name| !name.starts_with('$')), FailedOperation::of(operation)) {
+            (Some(name), FailedOperation::Function(function)) => {
                 let (words, function) = (domain(function), function.name);
                 format!("`{name}` has no value {when}: in `{function}`, {words}")
             }
@@ -147,7 +147,7 @@ impl Program {
                        the equations"
             )
             .at(self.place(origin)),
-            None => fault!(DOMAIN_ERROR, "{} {when}", why(Operation::of(operation)))
+            None => fault!(DOMAIN_ERROR, "{} {when}", why(FailedOperation::of(operation)))
                 .at(self.place(origin)),
         }
     }

@@ -1,6 +1,6 @@
 //! The modes on both sides of relations that chatter, and what was done about these.
 
-use crate::codegen::instruction::Register;
+use crate::arithmetic::Register;
 use crate::sim::Treatment;
 use crate::source::Span;
 

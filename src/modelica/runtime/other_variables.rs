@@ -2,7 +2,7 @@
 //! the simulation continues, results have no number for them and for what follows from them, and a
 //! warning says so.
 
-use super::execution::{Operation, read};
+use super::execution::{FailedOperation, read};
 use super::partial_observation::Others;
 use super::simulation_log::LogMessage;
 use super::system::System;
@@ -61,7 +61,7 @@ impl System {
     /// The variable whose value has failed; warns of it once.
     fn without_value(&mut self, t: f64, failure: Failure) -> Result<VarId, Failure> {
         let program = self.program.clone();
-        let Failure::Domain { origin, operation: Operation::DIVISION } = failure else {
+        let Failure::Domain { origin, operation: FailedOperation::DIVISION } = failure else {
             return Err(failure);
         };
         if self.messages.log.is_none() && !self.outputs.others.may_lack {
@@ -76,7 +76,7 @@ impl System {
             && !self.outputs.others.warned.contains(&variable)
         {
             self.outputs.others.warned.push(variable);
-            let value = program.failed_value(origin, Operation::DIVISION, "here");
+            let value = program.failed_value(origin, FailedOperation::DIVISION, "here");
             let text = format!("{value}; the simulation continues, as nothing depends on it");
             let (warning, span) = (Some(DOMAIN_ERROR), program.place(origin));
             log.record(LogMessage { time: t, text, warning, span });

@@ -1,6 +1,6 @@
 //! Parameters of a running system: values set from outside, and all others computed from these.
 
-use super::execution::{Operation, run, run_parameter, run_strictly};
+use super::execution::{FailedOperation, run, run_parameter, run_strictly};
 use super::newton::LoopSolver;
 use super::system::System;
 use crate::codegen::program::{Access, number_of_equations};
@@ -119,6 +119,6 @@ impl System {
             return Ok(());
         }
         let origin = number_of_equations(&self.program.sorted) as u32 + parameter.0;
-        Err(Failure::Domain { origin, operation: Operation::OTHER })
+        Err(Failure::Domain { origin, operation: FailedOperation::OTHER })
     }
 }

@@ -4,8 +4,8 @@ use super::execution::{read, run};
 use super::instants::{Stage, same_time};
 use super::sensitivity_state::Sensitivity;
 use super::system::System;
+use crate::arithmetic::Register;
 use crate::codegen::code::Outputs;
-use crate::codegen::instruction::Register;
 use crate::codegen::sensitivity::SensitivityCode;
 use crate::sim::{EventOutcome, Failure};
 

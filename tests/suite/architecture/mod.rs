@@ -26,8 +26,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
     ("budget", &[]),
-    ("jit", &["symbolic"]),
-    ("bytecode", &["budget", "external", "jit", "symbolic", "source", "diag"]),
+    ("jit", &[]),
+    ("arithmetic", &["symbolic"]),
+    ("bytecode", &["arithmetic", "budget", "external", "jit", "symbolic", "source", "diag"]),
     ("units", &[]),
     ("mat", &["units", "diag"]),
     ("value", &["budget", "name", "diag"]),
@@ -80,6 +81,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "lower",
         &[
+            "arithmetic",
             "graph",
             "budget",
             "bytecode",
@@ -101,6 +103,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "codegen",
         &[
+            "arithmetic",
             "budget",
             "bytecode",
             "jit",
@@ -117,6 +120,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "runtime",
         &[
+            "arithmetic",
             "codegen",
             "bytecode",
             "causalize",

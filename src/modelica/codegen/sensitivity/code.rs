@@ -3,7 +3,6 @@
 
 use super::super::event_code::{linear_in_time, scheduled_in_time};
 use super::super::hoist::Hoisting;
-use super::super::instruction::Register;
 use super::super::jacobian::Forward;
 use super::super::program::Program;
 use super::super::registers::Registers;
@@ -13,6 +12,7 @@ use super::super::tape_builder::TapeBuilder;
 use super::blocks::{needed_blocks, through_blocks};
 use super::directions::directions;
 use super::right_sides::{Kept, RightSides};
+use crate::arithmetic::Register;
 use crate::causalize::{Assignment, Block};
 use crate::codegen::code::Outputs;
 use crate::codegen::sequence::{expressions, observing};

@@ -6,7 +6,7 @@
 //! Boehm_JProteomeRes2014 (8 and 6) 1.0 instead of 1.1 ms.
 
 use super::super::code::Outputs;
-use super::super::instruction::Register;
+use crate::arithmetic::Register;
 use crate::sim::Pattern;
 use crate::symbolic::VarId;
 

@@ -3,7 +3,8 @@
 use super::emitter::{Emitter, Operand};
 use super::instances::Instances;
 use super::statements::Body;
-use crate::bytecode::{Code, ExternalCall, Instruction, Register};
+use crate::arithmetic::Register;
+use crate::bytecode::{Code, ExternalCall, Instruction};
 use crate::external::{COMPOSE, Slot, SlotKind};
 use crate::lower::expressions::StringPart;
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! Writes the instructions of one function and hands out its registers.
 
-use crate::bytecode::{Code, ExternalCall, Instruction, Register};
+use crate::arithmetic::Register;
+use crate::bytecode::{Code, ExternalCall, Instruction};
 use crate::source::Span;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;

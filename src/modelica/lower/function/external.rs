@@ -4,6 +4,7 @@ use super::emitter::Operand;
 use super::external_kinds::is_object;
 use super::instances::Instances;
 use super::statements::Body;
+use crate::arithmetic::{Operation, Operator};
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::{At, Diagnostic};
 use crate::eval::{FunctionComponent, c_function};
@@ -84,7 +85,8 @@ impl Body<'_, '_> {
                     let text = format!("`{}` has not the size that is declared", component.name);
                     let message = self.emitter.message(text.into());
                     let operator = RelationOperator::Equal;
-                    self.emitter.emit(Instruction::Relation { operator, d, a, b });
+                    self.emitter
+                        .emit(Operation::binary(Operator::Relation(operator), d, a, b).into());
                     self.emitter.emit(Instruction::Assert { a: d, message });
                 }
             }

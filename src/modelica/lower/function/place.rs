@@ -3,7 +3,8 @@
 use super::emitter::Operand;
 use super::instances::Argument;
 use super::statements::{Body, elements};
-use crate::bytecode::{Instruction, Register};
+use crate::arithmetic::Register;
+use crate::bytecode::Instruction;
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, FunctionComponent};
 use crate::fault;

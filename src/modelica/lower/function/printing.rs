@@ -3,6 +3,7 @@
 
 use super::emitter::Operand;
 use super::statements::Body;
+use crate::arithmetic::{Operation, Operator};
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::Diagnostic;
 use crate::external::{FAIL, PRINT};
@@ -64,7 +65,7 @@ impl Body<'_, '_> {
         }
         self.emitter.open();
         let fails = self.emitter.block(1);
-        self.emitter.emit(Instruction::Not { d: fails, a });
+        self.emitter.emit(Operation::unary(Operator::Not, fails, a).into());
         let holds = self.emitter.jump_unless(Operand::Register(fails));
         let parts = message_parts(&mut self.with_known_strings(), text);
         let mut arguments = vec![self.slot(Lowered::Text(known.into()), None, span)?];

@@ -4,7 +4,8 @@ use super::emitter::{Emitter, Operand};
 use super::external_kinds::prints;
 use super::instances::{Argument, Instances};
 use super::single_assignment::assigned_once;
-use crate::bytecode::{Code, Instruction, Register};
+use crate::arithmetic::{Operation, Operator, Register};
+use crate::bytecode::{Code, Instruction};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::execute::{self, Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets};
@@ -221,18 +222,20 @@ impl<'a, 'f> Body<'a, 'f> {
         let start = self.emitter.len();
         let operator = crate::symbolic::RelationOperator::Less;
         let (a, b) = (counter, self.emitter.register(range.iterations()));
-        self.emitter.emit(Instruction::Relation { operator, d: goes_on, a, b });
+        self.emitter.emit(Operation::binary(Operator::Relation(operator), goes_on, a, b).into());
         let exit = self.emitter.jump_unless(Operand::Register(goes_on));
         match range {
             Iterated::Range { first, .. } => {
-                self.emitter.emit(Instruction::Mul { d: variable, a: counter, b: first + 1 });
-                self.emitter.emit(Instruction::Add { d: variable, a: first, b: variable });
+                self.emitter
+                    .emit(Operation::binary(Operator::Mul, variable, counter, first + 1).into());
+                self.emitter
+                    .emit(Operation::binary(Operator::Add, variable, first, variable).into());
             }
             Iterated::Elements { first, .. } => {
                 self.emitter.emit(Instruction::Load { d: variable, base: first, offset: counter });
             }
         }
-        self.emitter.emit(Instruction::Add { d: counter, a: counter, b: one });
+        self.emitter.emit(Operation::binary(Operator::Add, counter, counter, one).into());
         Counting { variable, start, exit }
     }
 

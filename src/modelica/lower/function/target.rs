@@ -2,7 +2,8 @@
 
 use super::emitter::Operand;
 use super::statements::{Body, Counting};
-use crate::bytecode::{Elementary, Instruction};
+use crate::arithmetic::{Elementary, Operation, Operator};
+use crate::bytecode::Instruction;
 use crate::diag::Diagnostic;
 use crate::elementary;
 use crate::eval::{Function, ValueType};
@@ -28,9 +29,18 @@ impl Body<'_, '_> {
         Operand::Register(d)
     }
 
-    /// As [`Body::computed`], of a number that may exceed the largest Real.
-    fn computed_number(&mut self, instruction: impl FnOnce(u32) -> Instruction) -> Operand {
-        let number = self.computed(instruction);
+    /// The result of an operation of one operand.
+    fn of_one(&mut self, operator: Operator, a: u32) -> Operand {
+        self.computed(|d| Operation::unary(operator, d, a).into())
+    }
+
+    /// The result of an operation of two operands.
+    fn of_two(&mut self, operator: Operator, a: u32, b: u32) -> Operand {
+        self.computed(|d| Operation::binary(operator, d, a, b).into())
+    }
+
+    /// A number that may exceed the largest Real.
+    fn refused_beyond(&mut self, number: Operand) -> Operand {
         if let (true, Operand::Register(a)) = (self.instances.refuses_overflow, number) {
             self.emitter.emit(Instruction::Finite { a });
         }
@@ -56,8 +66,8 @@ impl Operations for Body<'_, '_> {
         match (operation, a) {
             (Unary::Neg, Operand::Constant(a)) => Operand::Constant(-a),
             (Unary::Not, Operand::Constant(a)) => Operand::Constant(truth(a == 0.0)),
-            (Unary::Neg, Operand::Register(a)) => self.computed(|d| Instruction::Neg { d, a }),
-            (Unary::Not, Operand::Register(a)) => self.computed(|d| Instruction::Not { d, a }),
+            (Unary::Neg, Operand::Register(a)) => self.of_one(Operator::Neg, a),
+            (Unary::Not, Operand::Register(a)) => self.of_one(Operator::Not, a),
         }
     }
 
@@ -71,18 +81,17 @@ impl Operations for Body<'_, '_> {
             return self.binary(Binary::Mul, a, a);
         }
         let (a, b) = (self.emitter.register(a), self.emitter.register(b));
-        self.computed_number(|d| match operation {
-            Binary::Add => Instruction::Add { d, a, b },
-            Binary::Sub => Instruction::Sub { d, a, b },
-            // Truths are 0 and 1.
-            Binary::Mul | Binary::And => Instruction::Mul { d, a, b },
-            Binary::Div => Instruction::Div { d, a, b },
-            Binary::Pow => Instruction::Pow { d, a, b },
-            Binary::Or => {
-                let function = Elementary::maximum();
-                Instruction::Binary { function, d, a, b }
-            }
-        })
+        let operator = match operation {
+            Binary::Add => Operator::Add,
+            Binary::Sub => Operator::Sub,
+            Binary::Mul => Operator::Mul,
+            Binary::Div => Operator::Div,
+            Binary::Pow => Operator::Pow,
+            Binary::And => Operator::And,
+            Binary::Or => Operator::Or,
+        };
+        let result = self.of_two(operator, a, b);
+        self.refused_beyond(result)
     }
 
     fn relation(
@@ -97,7 +106,7 @@ impl Operations for Body<'_, '_> {
             return Operand::Constant(truth(operator.holds(a, b)));
         }
         let (a, b) = (self.emitter.register(a), self.emitter.register(b));
-        self.computed(|d| Instruction::Relation { operator, d, a, b })
+        self.of_two(Operator::Relation(operator), a, b)
     }
 
     fn apply(
@@ -118,11 +127,10 @@ impl Operations for Body<'_, '_> {
         let registers: Vec<u32> = arguments.iter().map(|a| self.emitter.register(*a)).collect();
         Ok(match (function.value, registers.as_slice()) {
             (Value::Unary(_), &[a]) => {
-                self.computed_number(|d| Instruction::Unary { function, d, a })
+                let result = self.of_one(Operator::Unary(function), a);
+                self.refused_beyond(result)
             }
-            (Value::Binary(_), &[a, b]) => {
-                self.computed(|d| Instruction::Binary { function, d, a, b })
-            }
+            (Value::Binary(_), &[a, b]) => self.of_two(Operator::Binary(function), a, b),
             _ => unreachable!("lowering checks the number of arguments"),
         })
     }
