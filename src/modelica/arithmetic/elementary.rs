@@ -2,21 +2,21 @@
 //! derivatives are those of the table, evaluated.
 
 use super::number::Number;
+use super::operation::Operator;
 use crate::symbolic::function::{self, FunctionId, Value};
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
 
-/// Largest number of nodes of a derivative.
-const MAX_NODES: usize = 24;
+/// Largest number of steps of a derivative.
+const MOST_STEPS: usize = 24;
 
-/// A function of one or two arguments with its derivatives.
+/// A function of one or two arguments.
 pub struct Elementary {
     /// Which function it is.
     pub id: FunctionId,
     /// How its value is computed.
     pub value: Value,
-    partials: Vec<Partial>,
 }
 
 impl PartialEq for Elementary {
@@ -39,11 +39,15 @@ impl std::fmt::Debug for Elementary {
     }
 }
 
-/// A partial derivative: nodes in order, the last is the result.
-struct Partial {
-    nodes: Vec<Node>,
-    /// Where the operand of a node, an [`Expr`] of the pool it came from, is in `nodes`.
-    positions: Vec<u8>,
+/// A partial derivative: each step computes a number from those before, the last is the result.
+struct Partial(Vec<Step>);
+
+/// A step of a partial derivative; operands are positions of steps.
+enum Step {
+    Constant(f64),
+    Argument(usize),
+    Operation(Operator, usize, usize),
+    If(usize, usize, usize),
 }
 
 /// A function in a file: its number in the table.
@@ -65,14 +69,16 @@ pub(super) mod by_number {
     }
 }
 
-static TABLE: LazyLock<FxHashMap<FunctionId, Elementary>> = LazyLock::new(|| {
-    function::functions()
-        .map(|(id, function)| {
-            let partials =
-                (0..function.arity()).map(|which| Partial::new(function, which)).collect();
-            (id, Elementary { id, value: function.value, partials })
-        })
-        .collect()
+static TABLE: LazyLock<Vec<Elementary>> = LazyLock::new(|| {
+    function::functions().map(|(id, function)| Elementary { id, value: function.value }).collect()
+});
+
+/// The partial derivatives of every function.
+static PARTIALS: LazyLock<Vec<Vec<Partial>>> = LazyLock::new(|| {
+    let all = |function: &'static function::Function| {
+        (0..function.arity()).map(|which| Partial::new(function, which)).collect()
+    };
+    function::functions().map(|(_, function)| all(function)).collect()
 });
 
 static LOGARITHM: LazyLock<&'static Elementary> = LazyLock::new(|| {
@@ -82,7 +88,7 @@ static LOGARITHM: LazyLock<&'static Elementary> = LazyLock::new(|| {
 impl Elementary {
     /// The function of this number.
     pub fn of(id: FunctionId) -> &'static Elementary {
-        &TABLE[&id]
+        &TABLE[id.index()]
     }
 
     /// The natural logarithm.
@@ -92,7 +98,7 @@ impl Elementary {
 
     /// The partial derivative for an argument (from 0).
     pub(super) fn partial<T: Number>(&self, which: usize, arguments: &[T]) -> T {
-        self.partials[which].of(arguments)
+        PARTIALS[self.id.index()][which].of(arguments)
     }
 }
 
@@ -103,54 +109,33 @@ impl Partial {
             (0..function.arity() as u32).map(|at| pool.variable(VarId(at))).collect();
         let root = (function.derivative)(&mut pool, &arguments, which);
         let order = pool.reachable(&[root]);
-        assert!(order.len() <= MAX_NODES, "derivatives of the table are small");
-        let mut positions = vec![0; pool.len()];
-        for (position, expr) in (0u8..).zip(&order) {
-            positions[expr.index()] = position;
-        }
-        let nodes = order.iter().map(|expr| pool.node(*expr).clone()).collect();
-        Partial { nodes, positions }
+        assert!(order.len() <= MOST_STEPS, "derivatives of the table are small");
+        let positions: FxHashMap<Expr, usize> = order.iter().copied().zip(0..).collect();
+        let step = |e: &Expr| match pool.node(*e) {
+            Node::Constant(number) => Step::Constant(number.0),
+            Node::Variable(variable) => Step::Argument(variable.0 as usize),
+            Node::If(condition, a, b) => Step::If(positions[condition], positions[a], positions[b]),
+            node => match Operator::of_node(node) {
+                Some((operator, a, b)) => Step::Operation(operator, positions[&a], positions[&b]),
+                None => unreachable!("functions of the table call nothing and solve nothing"),
+            },
+        };
+        Partial(order.iter().map(step).collect())
     }
 
     fn of<T: Number>(&self, arguments: &[T]) -> T {
-        let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
-        let mut values = [T::constant(0.0); MAX_NODES];
-        for (position, node) in self.nodes.iter().enumerate() {
-            let get = |operand: &Expr| values[self.positions[operand.index()] as usize];
-            values[position] = match node {
-                Node::Constant(number) => T::constant(number.0),
-                Node::Variable(variable) => arguments[variable.0 as usize],
-                Node::Neg(a) => get(a).neg(),
-                Node::Add(a, b) => get(a).add(get(b)),
-                Node::Sub(a, b) => get(a).sub(get(b)),
-                Node::Mul(a, b) => get(a).mul(get(b)),
-                Node::Div(a, b) => get(a).div(get(b)),
-                Node::Pow(a, b) => get(a).pow(get(b)),
-                Node::Apply(id, list) => match list.second() {
-                    None => get(&list.first()).unary(Elementary::of(*id)),
-                    Some(b) => get(&list.first()).binary(get(&b), Elementary::of(*id)),
+        let mut values = [T::constant(0.0); MOST_STEPS];
+        for (at, step) in self.0.iter().enumerate() {
+            values[at] = match *step {
+                Step::Constant(value) => T::constant(value),
+                Step::Argument(which) => arguments[which],
+                Step::Operation(operator, a, b) => operator.of(values[a], values[b]),
+                Step::If(condition, a, b) => match values[condition].value() != 0.0 {
+                    true => values[a],
+                    false => values[b],
                 },
-                Node::If(condition, a, b) => {
-                    if get(condition).value() != 0.0 {
-                        get(a)
-                    } else {
-                        get(b)
-                    }
-                }
-                Node::Relation(operator, a, b) => {
-                    truth(operator.holds(get(a).value(), get(b).value()))
-                }
-                Node::And(a, b) => truth(get(a).value() != 0.0 && get(b).value() != 0.0),
-                Node::Or(a, b) => truth(get(a).value() != 0.0 || get(b).value() != 0.0),
-                Node::Not(a) => truth(get(a).value() == 0.0),
-                Node::Call { .. }
-                | Node::CallDerivative { .. }
-                | Node::List(_)
-                | Node::Solution { .. } => {
-                    unreachable!("functions of the table call nothing and solve nothing")
-                }
             };
         }
-        values[self.nodes.len() - 1]
+        values[self.0.len() - 1]
     }
 }

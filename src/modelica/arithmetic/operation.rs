@@ -3,8 +3,8 @@
 
 use super::elementary::{Elementary, by_number};
 use super::number::Number;
-use crate::symbolic::RelationOperator;
 use crate::symbolic::function::Function;
+use crate::symbolic::{Expr, Node, RelationOperator};
 
 /// A register.
 pub(crate) type Register = u32;
@@ -39,6 +39,37 @@ pub enum Operator {
 }
 
 impl Operator {
+    /// The operator of a node with its operands, the second of which is the first again if there is
+    /// one alone; `None` if the node is something else.
+    pub(crate) fn of_node(node: &Node) -> Option<(Operator, Expr, Expr)> {
+        Some(match node {
+            Node::Neg(a) => (Operator::Neg, *a, *a),
+            Node::Not(a) => (Operator::Not, *a, *a),
+            Node::Add(a, b) => (Operator::Add, *a, *b),
+            Node::Sub(a, b) => (Operator::Sub, *a, *b),
+            Node::Mul(a, b) => (Operator::Mul, *a, *b),
+            Node::Div(a, b) => (Operator::Div, *a, *b),
+            Node::Pow(a, b) => (Operator::Pow, *a, *b),
+            Node::And(a, b) => (Operator::And, *a, *b),
+            Node::Or(a, b) => (Operator::Or, *a, *b),
+            Node::Relation(operator, a, b) => (Operator::Relation(*operator), *a, *b),
+            Node::Apply(id, arguments) => {
+                let (function, a) = (Elementary::of(*id), arguments.first());
+                match arguments.second() {
+                    None => (Operator::Unary(function), a, a),
+                    Some(b) => (Operator::Binary(function), a, b),
+                }
+            }
+            Node::Constant(_)
+            | Node::Variable(_)
+            | Node::If(..)
+            | Node::Call { .. }
+            | Node::CallDerivative { .. }
+            | Node::List(_)
+            | Node::Solution { .. } => return None,
+        })
+    }
+
     /// The function of the table that it is.
     pub(crate) fn function(self) -> Option<&'static Function> {
         match self {

@@ -5,7 +5,7 @@ use super::hoist::Hoisting;
 use super::instruction::{Call, Instruction, LinearSolve};
 use super::routines::{Routine, Routines};
 use super::tape::Tape;
-use crate::arithmetic::{Elementary, Operation, Operator, Register};
+use crate::arithmetic::{Operation, Operator, Register};
 use crate::codegen::registers::Registers;
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -192,39 +192,15 @@ impl<'a> TapeBuilder<'a> {
 
     /// The operation that a node is, on operands that have been computed, to the next new register.
     fn operation(&self, node: &Node) -> Operation {
-        let d = self.registers.len() as Register;
-        let unary = |operator, a: &Expr| Operation::unary(operator, d, self.register(*a));
-        let binary = |operator, a: &Expr, b: &Expr| {
-            Operation::binary(operator, d, self.register(*a), self.register(*b))
+        let Some((operator, a, b)) = Operator::of_node(node) else {
+            unreachable!("what else there is has been computed")
         };
-        match node {
-            Node::Neg(a) => unary(Operator::Neg, a),
-            Node::Not(a) => unary(Operator::Not, a),
-            Node::Add(a, b) => binary(Operator::Add, a, b),
-            Node::Sub(a, b) => binary(Operator::Sub, a, b),
-            Node::Mul(a, b) => binary(Operator::Mul, a, b),
-            Node::Div(a, b) => binary(Operator::Div, a, b),
-            Node::Pow(a, b) if self.pool.as_constant(*b) == Some(2.0) => {
-                binary(Operator::Mul, a, a)
+        let d = self.registers.len() as Register;
+        match operator {
+            Operator::Pow if self.pool.as_constant(b) == Some(2.0) => {
+                Operation { operator: Operator::Mul, d, a: self.register(a), b: self.register(a) }
             }
-            Node::Pow(a, b) => binary(Operator::Pow, a, b),
-            Node::And(a, b) => binary(Operator::And, a, b),
-            Node::Or(a, b) => binary(Operator::Or, a, b),
-            Node::Relation(operator, a, b) => binary(Operator::Relation(*operator), a, b),
-            Node::Apply(id, arguments) => {
-                let (function, a) = (Elementary::of(*id), arguments.first());
-                match arguments.second() {
-                    None => unary(Operator::Unary(function), &a),
-                    Some(b) => binary(Operator::Binary(function), &a, &b),
-                }
-            }
-            Node::Constant(_)
-            | Node::Variable(_)
-            | Node::If(..)
-            | Node::Call { .. }
-            | Node::CallDerivative { .. }
-            | Node::List(_)
-            | Node::Solution { .. } => unreachable!("not an operation"),
+            _ => Operation { operator, d, a: self.register(a), b: self.register(b) },
         }
     }
 

@@ -143,9 +143,14 @@ pub fn find(name: &str) -> Option<FunctionId> {
 }
 
 impl FunctionId {
+    /// Its position in the table.
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+
     /// Its entry.
     pub fn get(self) -> &'static Function {
-        TABLE[self.0 as usize]
+        TABLE[self.index()]
     }
 }
 
