@@ -5,8 +5,9 @@
 
 #![allow(unsafe_code, reason = "machine code hands over results as pointers")]
 
+use super::dual::Dual;
 use super::elementary::Elementary;
-use super::number::{Dual, Number};
+use super::number::Number;
 use super::operation::Operator;
 use crate::elementary;
 use crate::symbolic::RelationOperator;
