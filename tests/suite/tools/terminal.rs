@@ -10,7 +10,7 @@ use tempfile::TempDir;
 const PATIENCE: u64 = 120_000;
 
 /// A model whose simulation takes longer than anybody waits.
-/// So many states that the limit on the number of steps is far away.
+/// It has so many states that the limit on the number of steps is far away.
 const ENDLESS: &str = "model M Real x[50](each start = 1);\
     equation der(x) = {sin(1e6*time*i) for i in 1:50}; end M;\n";
 
