@@ -122,3 +122,37 @@ fn integers_that_reals_do_not_hold_are_exact() {
     let exact = (1_103_515_245_i64 * 123_456_789 + 12_345) % 2_147_483_648;
     assert_eq!(text(session.variable("y")), text(Some(&Value::Integer(exact))));
 }
+
+#[test]
+fn a_function_that_fails_when_compiled_is_left_to_its_statements() {
+    let runs = |session: &Session| {
+        session.functions.compiled.as_ref().map_or(0, |functions| functions.runs())
+    };
+    let (mut session, said) = session(FUNCTIONS);
+    session.run_text("run.mos", "for i in 1:150 loop y := F.warned(-1.0); end for;\n");
+    assert_eq!((runs(&session), compiled(&session)), (100, 0), "{}", said());
+    // Where it has values for other arguments, it is compiled for them.
+    let (mut session, said) = self::session(FUNCTIONS);
+    let script = "for i in 1:150 loop y := F.warned(-1.0); y := F.warned(1.0); end for;\n";
+    session.run_text("run.mos", script);
+    assert_eq!((runs(&session), compiled(&session)), (298, 149), "{}", said());
+}
+
+/// Each of three functions has 48,000 instructions.
+#[test]
+fn the_length_of_one_function_does_not_count_for_another() {
+    let function = |name: &str| {
+        format!(
+            "function {name} input Real x[:]; output Real y; algorithm y := sum(2*x + x .* x);
+             end {name};"
+        )
+    };
+    let names = ["first", "second", "third"];
+    let classes = names.map(function).concat();
+    let (mut session, said) = session(&classes);
+    let calls = names.map(|name| format!("y := {name}(x);")).concat();
+    let script = format!("x := ones(6000)*0.5; for i in 1:{CALLS} loop {calls} end for;\n");
+    assert_eq!(session.run_text("run.mos", &script).code, 0, "{}", said());
+    let answered = (CALLS - 2) * names.len();
+    assert_eq!(compiled(&session), answered as u64);
+}

@@ -166,7 +166,7 @@ pub(crate) struct Instances {
     exhausted: Option<Failure>,
     instructions: usize,
     /// Most of them.
-    pub(super) max_instructions: usize,
+    max_instructions: usize,
     /// Whether results beyond the largest Real are faults, and not infinite.
     pub(super) refuses_overflow: bool,
     /// Whether a statement is at hand that may write.
@@ -188,6 +188,16 @@ impl Instances {
     pub(crate) fn new(strict: bool) -> Instances {
         let functions = Functions { takes_defaults: !strict, ..Functions::default() };
         Instances { functions, max_instructions: MAX_INSTRUCTIONS, ..Instances::default() }
+    }
+
+    /// Most instructions of all functions.
+    pub(super) fn max_instructions(&self) -> usize {
+        self.max_instructions
+    }
+
+    /// Lets what is compiled next have so many instructions, in the bounds of all functions.
+    pub(super) fn allow(&mut self, instructions: usize) {
+        self.max_instructions = MAX_INSTRUCTIONS.min(self.instructions + instructions);
     }
 
     /// The finished functions, and warnings of them.
@@ -474,12 +484,13 @@ impl Instances {
         }
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
         code.inverses = self.inverses(flat, function, &signature.arguments, span);
-        self.instructions += code.instructions.len();
+        let instructions = self.instructions + code.instructions.len();
         let limit = self.max_instructions;
-        if self.instructions > limit {
+        if instructions > limit {
             let words = format!("the functions of this model need more than {limit} instructions");
             return Err(fault!(NOT_SUPPORTED, "{words}").at(function.span));
         }
+        self.instructions = instructions;
         self.functions.codes[instance.code as usize] = code;
         self.finished[instance.code as usize] = true;
         Ok(instance)

@@ -15,16 +15,24 @@ use std::sync::Arc;
 
 /// The call of a function with the same sizes that makes it worth compiling.
 const WORTH_COMPILING: u32 = 3;
+/// A compiled function is left to the interpreter once it has failed, warned or given NaN so many times
+/// more often than it answered. A run takes about a hundredth of the time of the statements, so that
+/// these add one call to a hundred, and a few arguments without a value take the others nothing.
+const GIVEN_UP: u32 = 100;
 /// Statements of a call after which the functions in it are compiled.
 const LONG: u64 = 10_000;
 /// Most combinations of functions, sizes and Integers.
 const MAX_KEPT: usize = 2_000;
-/// Most instructions of all functions that a script calls: where statements work on large arrays the
-/// interpreter is quick, and compiled code has an instruction for each element.
+/// Most instructions of a function that a script calls, with those that it calls. Compiled code has
+/// instructions for each element of an array: 8 for `sum(2*x + x .* x)`, 7 for
+/// `y[2:end - 1] := (x[1:end - 2] + x[2:end - 1] + x[3:end])/3`, 4 for each element of a matrix that is made
+/// and multiplied by a vector, none in a loop over `x[i]`. Counted with 10 to 30,000 elements: up to this
+/// limit statements on arrays take 1.5 to 4 times as long as compiled code, and compiling takes as long as 3
+/// to 10 calls; a loop takes 40 times as long (debug build).
 const MAX_INSTRUCTIONS_IN_SCRIPTS: usize = 100_000;
-/// Most numbers in the arguments of a function that a script calls, for the same reason: the results of a
-/// large population are fewer.
-const MAX_NUMBERS_IN_SCRIPTS: usize = 50_000;
+/// Most numbers in the arguments of a function that a script calls: with two instructions for each, as for
+/// `max(x) - min(x)`, which has the fewest of those measured above, it has as many as it may.
+const MAX_NUMBERS_IN_SCRIPTS: usize = MAX_INSTRUCTIONS_IN_SCRIPTS / 2;
 
 /// From greater Integers sums with small ones may lead beyond 2^53, where scripts are exact and compiled
 /// functions are not.
@@ -68,6 +76,8 @@ pub struct CompiledFunctions {
     in_scripts: bool,
     /// How many calls they answered.
     calls: u64,
+    /// How many calls were tried.
+    runs: u64,
 }
 
 /// A function, by its place in memory, the sizes of its arguments, and the Integers that it is compiled
@@ -76,7 +86,8 @@ type Key = (usize, Box<[u64]>);
 
 enum State {
     Called(u32),
-    Compiled(Instance),
+    /// With how many more of its runs failed than answered.
+    Compiled(Instance, u32),
     /// Sizes depend on the values of Integers.
     NeedsIntegers,
     Refused,
@@ -91,6 +102,7 @@ impl CompiledFunctions {
             functions: FxHashMap::default(),
             in_scripts,
             calls: 0,
+            runs: 0,
         }
     }
 
@@ -99,7 +111,6 @@ impl CompiledFunctions {
     pub fn of_scripts() -> CompiledFunctions {
         let mut instances = Instances::new(true);
         instances.refuses_overflow = true;
-        instances.max_instructions = MAX_INSTRUCTIONS_IN_SCRIPTS;
         CompiledFunctions::new(instances, true)
     }
 
@@ -112,15 +123,30 @@ impl CompiledFunctions {
         inputs: &[&Value],
         library: impl FnMut() -> Option<Arc<FlatModel>>,
     ) -> Option<Vec<Value>> {
-        let instance = self.instance(function, inputs, library)?;
-        let outputs = self.run(function, &instance, inputs)?;
-        self.calls += 1;
-        Some(outputs)
+        let (key, instance, before) = self.instance(function, inputs, library)?;
+        self.runs += 1;
+        let outputs = self.run(function, &instance, inputs);
+        let failures = match &outputs {
+            Some(_) => before.saturating_sub(1),
+            None => before + 1,
+        };
+        if failures >= GIVEN_UP {
+            self.kept.insert(key, State::Refused);
+        } else if failures != before {
+            self.kept.insert(key, State::Compiled(instance, failures));
+        }
+        self.calls += u64::from(outputs.is_some());
+        outputs
     }
 
     /// How many calls they answered.
     pub fn calls(&self) -> u64 {
         self.calls
+    }
+
+    /// How many calls were tried.
+    pub fn runs(&self) -> u64 {
+        self.runs
     }
 
     /// The compiled function, if it is worth it and possible.
@@ -129,7 +155,7 @@ impl CompiledFunctions {
         function: &Arc<Function>,
         inputs: &[&Value],
         mut library: impl FnMut() -> Option<Arc<FlatModel>>,
-    ) -> Option<Instance> {
+    ) -> Option<(Key, Instance, u32)> {
         let numbers = |input: &&Value| dims_of(input).iter().product::<usize>();
         let is_large = inputs.iter().map(numbers).sum::<usize>() > MAX_NUMBERS_IN_SCRIPTS;
         if is_large && self.in_scripts {
@@ -139,16 +165,23 @@ impl CompiledFunctions {
         inputs.iter().for_each(|input| sizes.extend(dims_of(input).iter().map(|n| *n as u64)));
         let address = Arc::as_ptr(function).addr();
         let key = (address, sizes.clone().into_boxed_slice());
-        match self.state(key, function, inputs, false, &mut library)? {
-            State::Compiled(instance) => return Some(instance.clone()),
+        match self.state(&key, function, inputs, false, &mut library)? {
+            State::Compiled(instance, failures) => {
+                let found = (instance.clone(), *failures);
+                return Some((key, found.0, found.1));
+            }
             State::NeedsIntegers => {}
             State::Called(_) | State::Refused => return None,
         }
         for (input, value) in function.inputs.iter().zip(inputs) {
             sizes.extend(whole(input, value).map(f64::to_bits));
         }
-        match self.state((address, sizes.into()), function, inputs, true, &mut library)? {
-            State::Compiled(instance) => Some(instance.clone()),
+        let key = (address, sizes.into_boxed_slice());
+        match self.state(&key, function, inputs, true, &mut library)? {
+            State::Compiled(instance, failures) => {
+                let found = (instance.clone(), *failures);
+                Some((key, found.0, found.1))
+            }
             _ => None,
         }
     }
@@ -156,16 +189,16 @@ impl CompiledFunctions {
     /// What is known of a combination, after one more call.
     fn state(
         &mut self,
-        key: Key,
+        key: &Key,
         function: &Arc<Function>,
         inputs: &[&Value],
         with_integers: bool,
         library: &mut dyn FnMut() -> Option<Arc<FlatModel>>,
     ) -> Option<&State> {
-        if self.kept.len() >= MAX_KEPT && !self.kept.contains_key(&key) {
+        if self.kept.len() >= MAX_KEPT && !self.kept.contains_key(key) {
             return None;
         }
-        let calls = match self.kept.get(&key) {
+        let calls = match self.kept.get(key) {
             None => 0,
             Some(State::Called(calls)) => *calls,
             Some(_) => WORTH_COMPILING,
@@ -180,7 +213,7 @@ impl CompiledFunctions {
             };
             self.kept.insert(key.clone(), state);
         }
-        self.kept.get(&key)
+        self.kept.get(key)
     }
 
     fn compiled(
@@ -203,6 +236,9 @@ impl CompiledFunctions {
         if !function.outputs.iter().all(is_numeric) {
             return State::Refused;
         }
+        if self.in_scripts {
+            self.instances.allow(MAX_INSTRUCTIONS_IN_SCRIPTS);
+        }
         match self.instances.instance(library, function, &known, Span::NONE) {
             Ok(instance) if instance.impure || instance.writes => State::Refused,
             // A file may be rewritten between two calls.
@@ -210,7 +246,7 @@ impl CompiledFunctions {
             Ok(instance) if self.in_scripts && self.instances.leaves_program(instance.code) => {
                 State::Refused
             }
-            Ok(instance) => State::Compiled(instance),
+            Ok(instance) => State::Compiled(instance, 0),
             Err(e) if e.code == NO_CONSTANT_VALUE && !with_integers => State::NeedsIntegers,
             Err(_) => State::Refused,
         }

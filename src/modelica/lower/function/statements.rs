@@ -295,7 +295,7 @@ impl Domain for Body<'_, '_> {
     type Condition = Operand;
 
     fn statement(&mut self, statement: &Statement) -> Done<Self> {
-        let limit = self.instances.max_instructions;
+        let limit = self.instances.max_instructions();
         if self.emitter.len() > limit {
             return Err(fault!(
                 NOT_SUPPORTED,
