@@ -14,6 +14,7 @@ use super::{Descriptions, Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
+use crate::registry::BAD_OPTION;
 use crate::sim::Settings;
 use crate::{bail, fault};
 use std::sync::Arc;
@@ -270,6 +271,13 @@ fn identified_parameters(model: &dyn Model, names: &[String]) -> Result<Vec<Para
             .help_if(suggest::did_you_mean(name, known()))
             .help(format!("its parameters: {}", known().collect::<Vec<_>>().join(", ")))),
     };
+    if let Some(k) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
+        bail!(
+            BAD_OPTION,
+            "parameter `{}` is named twice: a parameter has one gene", names[k];
+            help: "give each parameter once in `Parameter_Names`, and one column of the population for it"
+        );
+    }
     names.iter().map(find).collect()
 }
 

@@ -6,6 +6,7 @@ use super::{Evaluator, Question};
 use crate::diag::Code;
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
+use crate::registry::BAD_OPTION;
 use std::sync::Arc;
 
 fn question(x_name: &str, x: &[f64]) -> Question {
@@ -85,6 +86,7 @@ fn wrong_questions_are_refused() {
     };
     assert_eq!(code(|q| q.parameters = vec!["c".into()]), PARAMETER_NOT_FOUND);
     assert_eq!(code(|q| q.parameters = vec!["n".into()]), FIXED_PARAMETER);
+    assert_eq!(code(|q| q.parameters = ["b", "a", "b"].map(String::from).to_vec()), BAD_OPTION);
     assert_eq!(code(|q| q.y_name = "w".into()), UNKNOWN_OUTPUT);
     assert_eq!(code(|q| q.x_name = "w".into()), UNKNOWN_OUTPUT);
     assert_eq!(code(|q| q.x = vec![]), BAD_DATA);
