@@ -3,7 +3,9 @@
 use crate::codegen::LinearPart;
 use crate::diag::{Diagnostic, Fault};
 use crate::fmi::description::DefaultExperiment;
-use crate::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory};
+use crate::sim::{
+    DaeSystem, Failure, OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory,
+};
 use crate::units::Definitions;
 use serde::{Deserialize, Serialize};
 
@@ -154,6 +156,20 @@ pub trait Instance: Send {
     fn is_static(&mut self) -> bool;
     /// The system that is simulated, where it is one of this process.
     fn system(&mut self) -> Option<&mut dyn DaeSystem>;
+    /// The observed variables at a time, which need no states: with the relations that hold at this
+    /// time, which no simulation has led to. `unknowns` are those of the start.
+    ///
+    /// # Errors
+    ///
+    /// Why they have no values there.
+    fn observe_in_time(
+        &mut self,
+        time: f64,
+        unknowns: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.system().map_or(Ok(()), |system| system.observe(time, unknowns, out))
+    }
     /// From the next simulation on, the observed variables are followed by their derivatives for the
     /// varied parameters, parameter by parameter; or no longer.
     ///

@@ -1,7 +1,7 @@
 //! How the measured points are found on a simulation: at times, in X, or one by one.
 
 use super::model::Model;
-use super::points::{Path, time_of};
+use super::points::{Path, is_jump, time_of};
 use crate::diag::Fault;
 use crate::sim::{OutputGrid, Settings};
 
@@ -83,7 +83,7 @@ fn times_of_points(
     // Not initialized at every time: what must hold for the other variables does not matter here.
     let mut x_at = |time: f64| {
         let mut value = [f64::NAN];
-        system.observe(time, &y, &mut value).map(|()| value[0])
+        instance.observe_in_time(time, &y, &mut value).map(|()| value[0])
     };
     let length = settings.stop - settings.start;
     let grid: Vec<f64> =
@@ -95,6 +95,14 @@ fn times_of_points(
     reachable(&path, x_name, points)?;
     let slices: Vec<usize> =
         points.iter().map(|&point| path.slice_of(x_name, point)).collect::<Result<_, Fault>>()?;
-    let time = |(&point, k): (&f64, usize)| time_of(grid[k], grid[k + 1], point, &mut x_at);
-    Ok(points.iter().zip(slices).map(time).collect::<Result<Vec<f64>, _>>().ok())
+    let mut times = Vec::with_capacity(points.len());
+    for (&point, k) in points.iter().zip(slices) {
+        let Ok(time) = time_of(grid[k], grid[k + 1], point, &mut x_at) else { return Ok(None) };
+        let Ok(reached) = x_at(time) else { return Ok(None) };
+        if is_jump(reached - point, x[k + 1] - x[k]) {
+            return Err(path.jumps_over(x_name, point, time));
+        }
+        times.push(time);
+    }
+    Ok(Some(times))
 }

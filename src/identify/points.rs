@@ -2,7 +2,19 @@
 
 use super::errors::{NOT_MONOTONE, POINTS_OUTSIDE};
 use crate::diag::Fault;
+use crate::table::significant;
 use crate::{bail, fault};
+
+/// Where X ends up from a measured value, at the time at which it is nearest, by more than this part
+/// of what it changes by in a slice, it jumps there. Times are found to the last bit: a slice of one
+/// 500th of a simulation that begins at 1e6 times its length has 2e-7.
+const JUMP: f64 = 1e-6;
+
+/// Whether X, this far from a value at the nearest time in a slice in which it changes by `change`,
+/// jumps over that value.
+pub(crate) fn is_jump(distance: f64, change: f64) -> bool {
+    distance.abs() > JUMP * change.abs()
+}
 
 /// A simulated trajectory of X: times, not decreasing, and the values there.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +52,24 @@ impl Path<'_> {
             }
             found = found.or(Some(k));
         }
-        found.ok_or_else(|| self.outside(name, &[target]))
+        found.ok_or_else(|| {
+            let passes = |k: &usize| (self.x[*k] < target) != (self.x[k + 1] < target);
+            match (0..self.x.len().saturating_sub(1)).find(passes) {
+                Some(k) => self.jumps_over(name, target, self.times[k]),
+                None => self.outside(name, &[target]),
+            }
+        })
+    }
+
+    /// The fault that says where X jumps over a point.
+    pub(crate) fn jumps_over(&self, name: &str, target: f64, time: f64) -> Fault {
+        fault!(
+            POINTS_OUTSIDE,
+            "measured at `{name}` = {target}, but the simulated `{name}` jumps over this value at \
+             {} s",
+            significant(time, 6);
+            help: "remove this point, or use `time` as X"
+        )
     }
 
     /// Whether X continues beyond `target` in slice `k`, which starts there, in the direction from
@@ -166,6 +195,15 @@ mod tests {
         assert_eq!(still.slice_of("x", 1.0).unwrap_err().code, NOT_MONOTONE);
         let event = Path { times: &[0.0, 1.0, 1.0, 2.0], x: &[0.0, 1.0, 1.0, 2.0] };
         assert_eq!(event.slice_of("x", 1.0), Ok(0), "two rows at an event are one time");
+    }
+
+    #[test]
+    fn a_value_that_is_jumped_over_is_named_with_the_time() {
+        let event = Path { times: &[0.0, 1.0, 1.0, 2.0], x: &[0.0, 1.0, 2.0, 3.0] };
+        let fault = event.slice_of("x", 1.5).unwrap_err();
+        assert_eq!(fault.code, POINTS_OUTSIDE);
+        assert!(fault.message.ends_with("jumps over this value at 1 s"), "{}", fault.message);
+        assert_eq!(event.slice_of("x", 2.0), Ok(2), "reached after the jump");
     }
 
     #[test]

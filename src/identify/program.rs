@@ -6,9 +6,12 @@ use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::{Diagnostic, Fault};
 use crate::fmi::description::DefaultExperiment;
 use crate::runtime::System;
-use crate::sim::{DaeSystem, Residual as _, Settings, SimError, Simulator, Statistics, Trajectory};
+use crate::sim::{
+    DaeSystem, Failure, Residual as _, Settings, SimError, Simulator, Statistics, Trajectory,
+};
 use crate::source::with_source_table;
 use rustc_hash::FxHashSet;
+use std::cell::OnceCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A compiled model under the name that the script gave it.
@@ -178,7 +181,8 @@ impl Model for CompiledModel {
             system.set_parameter(*parameter, *value)?;
         }
         let sensitivities = self.sensitivities.clone();
-        Ok(Box::new(CompiledInstance { system, slots, positions, sensitivities }))
+        let solves = OnceCell::new();
+        Ok(Box::new(CompiledInstance { system, slots, positions, solves, sensitivities }))
     }
 }
 
@@ -188,6 +192,8 @@ struct CompiledInstance {
     slots: Vec<usize>,
     /// Positions of the observed variables.
     positions: Vec<usize>,
+    /// Whether relations that the observed variables need compare solved variables.
+    solves: OnceCell<bool>,
     sensitivities: Arc<Sensitivities>,
 }
 
@@ -216,6 +222,17 @@ impl Instance for CompiledInstance {
 
     fn system(&mut self) -> Option<&mut dyn DaeSystem> {
         Some(&mut self.system)
+    }
+
+    fn observe_in_time(
+        &mut self,
+        time: f64,
+        unknowns: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        let program = self.system.program();
+        let solves = *self.solves.get_or_init(|| !program.switches_at_known_times(&self.positions));
+        self.system.observe_in_time((time, unknowns), solves, out)
     }
 
     fn differentiate(&mut self, with_derivatives: bool) -> Result<(), String> {

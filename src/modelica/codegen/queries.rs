@@ -169,6 +169,17 @@ impl Program {
         needed.iter().any(remembered) || self.continuous.unknowns.iter().any(found)
     }
 
+    /// Whether all relations and roundings that these variables need change at times that parameters
+    /// alone determine, so that no variable has to be solved for to evaluate them.
+    pub fn switches_at_known_times(&self, variables: &[usize]) -> bool {
+        let needed = self.dependencies(variables);
+        let is_needed = |register: &u32| needed.contains(&VarId(*register));
+        let relations = self.switching.relations.iter().map(|own| (own.register, own.time));
+        let roundings = self.events.roundings.iter().map(|own| (own.register, own.time));
+        let mut all = relations.chain(roundings);
+        all.all(|(register, time)| time.is_some() || !is_needed(&register))
+    }
+
     /// Whether a variable is computed from one of these parameters, other parameters between them
     /// included. States, iteration variables and values of events count as depending on every parameter.
     pub fn depends_on_parameters(&self, variable: usize, parameters: &[usize]) -> bool {

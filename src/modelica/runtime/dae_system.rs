@@ -2,7 +2,7 @@
 
 use super::difference_quotients::quotient;
 use super::execution::read;
-use super::instants::{Stage, same_time};
+use super::instants::{Change, Stage, same_time};
 use super::recordings::distance_of_knots;
 use super::system::System;
 use crate::sim::{
@@ -306,6 +306,31 @@ impl Modes for System {
 }
 
 impl System {
+    /// What is observed at a time, where no states are needed for it: relations and roundings have the
+    /// values that their sides have then. `solves`: whether they compare solved variables.
+    ///
+    /// # Errors
+    ///
+    /// An expression has no value there, or a loop no solution.
+    pub fn observe_in_time(
+        &mut self,
+        (t, y): (f64, &[f64]),
+        solves: bool,
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        // One may decide what another compares.
+        for _ in 0..=self.program.switching.relations.len() {
+            if solves {
+                self.solve(Stage::Continuous)?;
+            }
+            if !self.update_relations(t, Change::All) {
+                break;
+            }
+        }
+        self.observe(t, y, out)
+    }
+
     /// The Jacobian of the right-hand side by difference quotients.
     fn difference_jacobian(
         &mut self,

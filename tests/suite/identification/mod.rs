@@ -12,6 +12,7 @@ mod laboratory;
 mod measured_time;
 mod nist_problems;
 mod operators;
+mod points_over_variables;
 mod process_noise;
 mod ranks;
 mod relative_data;

@@ -3,6 +3,7 @@
 use super::super::{Experiment, Failed, Free, ModelSimulator, Observation, Problem, Simulate};
 use crate::diag::Fault;
 use crate::elementary;
+use crate::errors::{NOT_MONOTONE, POINTS_OUTSIDE};
 use std::ops::Range;
 
 /// How far bands go beyond the measured points, as a fraction of their width: as far as the eye
@@ -293,7 +294,14 @@ fn on_grid(
     dense.deviations = 0;
     dense.observations =
         names.into_iter().map(|y_name| Observation { y_name, x: x.clone() }).collect();
-    let mut simulator = ModelSimulator::new(std::slice::from_ref(&dense))?;
+    let mut simulator = match ModelSimulator::new(std::slice::from_ref(&dense)) {
+        Ok(simulator) => simulator,
+        // The grid has points between the measured ones, which X need not reach.
+        Err(fault) if [POINTS_OUTSIDE, NOT_MONOTONE].contains(&fault.code) => {
+            return Ok(Err(fault.message));
+        }
+        Err(fault) => return Err(fault),
+    };
     let mut out = vec![f64::NAN; dense.observations.len() * x.len()];
     for values in around {
         if let Err(failed) = simulator.simulate(values, &mut out) {
