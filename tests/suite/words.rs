@@ -21,7 +21,7 @@ const GONE: &[Word] = &[
     ("carried out", "executed, evaluated", 0),
     ("cannot stand", "is not allowed, cannot be mixed", 0),
     ("stand in", "are in, are allowed in", 1),
-    ("stands in", "is in, belongs to", 3),
+    ("stands in", "is in, belongs to", 2),
     ("stands behind", "follows", 1),
     ("stands before", "precedes", 0),
     ("may stand", "is allowed", 0),

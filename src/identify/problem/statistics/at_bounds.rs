@@ -35,7 +35,8 @@ pub(in crate::problem) struct AtEnd {
     pub parameter: usize,
     /// 1 where the range lies above the end, −1 where below.
     pub(crate) inward: f64,
-    /// How far the linear fit would go beyond the end, in standard errors.
+    /// How far the linear fit would go beyond the end, in standard errors, if no end held any
+    /// parameter.
     pub pull: f64,
 }
 
@@ -44,6 +45,8 @@ pub(in crate::problem) struct AtEnd {
 pub(in crate::problem) struct AtBounds {
     /// Those parameters.
     pub ends: Vec<AtEnd>,
+    /// By how much the weighted sum of squares is smaller where the linear fit would go.
+    pub fall: f64,
     /// Standard errors and correlations of the others with those held.
     pub held: Uncertainty,
     /// How far the 95 % interval of each parameter reaches below and above, in its unit; infinitely
@@ -84,6 +87,7 @@ impl AtBounds {
         let open = [f64::INFINITY; 2];
         AtBounds {
             ends: self.ends.into_iter().filter_map(end).collect(),
+            fall: self.fall,
             held: Uncertainty {
                 standard_deviations: places
                     .iter()
@@ -121,10 +125,16 @@ impl AtBounds {
             gram: DMatrix::from_fn(n, n, |k, l| dot(&columns[k], &columns[l])),
             inward: inward.to_vec(),
         };
-        let pull = |k: usize| {
-            -inward[k].unwrap_or(0.0) * quadratic.gradient[k] * full.standard_deviations[k]
-                / variance
+        // H⁻¹ s in standard errors. Ends together hold what each does: a parameter may only stand at
+        // its end because others do at theirs.
+        let step = |k: usize| {
+            let of = |l: usize| full.correlations[k * n + l] * full.standard_deviations[l];
+            (0..n).map(|l| of(l) * quadratic.gradient[l]).sum::<f64>() / variance
         };
+        let fall =
+            at_ends.iter().map(|&k| quadratic.gradient[k] * step(k) * full.standard_deviations[k]);
+        let fall = fall.sum();
+        let pull = |k: usize| -inward[k].unwrap_or(0.0) * step(k);
         let ends = at_ends.iter().map(|&k| AtEnd {
             parameter: k,
             inward: inward[k].unwrap_or(0.0),
@@ -136,7 +146,7 @@ impl AtBounds {
             Some([quadratic.reach(k, -1.0, first, rise)?, quadratic.reach(k, 1.0, first, rise)?])
         };
         let reach: Option<Vec<[f64; 2]>> = (0..n).map(sides).collect();
-        Some(AtBounds { ends: ends.collect(), held, reach: reach? })
+        Some(AtBounds { ends: ends.collect(), fall, held, reach: reach? })
     }
 }
 
@@ -333,6 +343,25 @@ mod tests {
         }
         assert!((found.ends[0].pull - 20.0).abs() < 1e-9, "{:?}", found.ends);
         assert!(found.reach[1][1] < 0.12, "{:?}", found.reach);
+    }
+
+    /// y = a + b t with data whose fit is a = 1.04 ± 0.0849 and b = -0.52 ± 0.0346 (numpy), within
+    /// a ≥ 1.2 and b ≥ -0.4: the linear fit without the ends is that fit, and its sum of squares 0.036.
+    #[test]
+    fn several_ends_are_left_together() {
+        let t = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let residuals: Vec<f64> =
+            [1.0, 0.6, -0.1, -0.4, -1.1].iter().zip(t).map(|(y, t)| y - (1.2 - 0.4 * t)).collect();
+        let square: f64 = residuals.iter().map(|r| r * r).sum();
+        let variances = [square / 3.0, 10.0 * square / 3.0];
+        let inward = [Some(1.0), Some(1.0)];
+        let columns = [vec![1.0; 5], t.to_vec()];
+        let found = AtBounds::of(&columns, &[], Some(&residuals), &inward, variances).unwrap();
+        assert!((square - found.fall - 0.036).abs() < 1e-12, "{}", found.fall);
+        let scale = (square / 0.036).sqrt();
+        for (end, expected) in found.ends.iter().zip([0.16 / 0.084_853, 0.12 / 0.034_641]) {
+            assert!((end.pull * scale - expected).abs() < 1e-4 * expected, "{end:?}");
+        }
     }
 
     #[test]

@@ -580,22 +580,22 @@ impl Statistics {
         Some(found.standard_deviations[place]).filter(|own| own.is_finite())
     }
 
-    /// How far the linear fit would go beyond the end at which a parameter stands, in standard
-    /// errors of the fit there; `None` where it stands at none, and beside groups that act only together:
+    /// How far the linear fit would go beyond the end at which a parameter stands, if none were held
+    /// at an end, in standard errors of the fit there; `None` where it stands at none, and beside groups that act only together:
     /// with three parameters at ends beside such a group (stack NedStack PS6), the linear model put the
     /// optimum 7e6 standard errors away.
     pub(super) fn pull(&self, k: usize) -> Option<f64> {
         if !self.rank.non_identifiable.is_empty() {
             return None;
         }
-        let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
-        let pull = ends.find(|end| end.parameter == k)?.pull;
+        let at_bounds = self.at_bounds.as_ref()?;
+        let pull = at_bounds.ends.iter().find(|end| end.parameter == k)?.pull;
         if self.spread.believed || self.spread.robust || self.is_mixed() {
             return Some(pull);
         }
-        // Residuals at the end of a range contain the misfit that the end causes: an error estimated
+        // Residuals at the ends of ranges contain the misfit that the ends cause: an error estimated
         // from them makes any distance one of less than the root of the degrees of freedom.
-        let left = self.square - pull * pull * self.spread.variance;
+        let left = self.square - at_bounds.fall;
         Some(pull * (self.square / left.max(ROUNDING * self.square)).sqrt())
     }
 }
