@@ -3,9 +3,11 @@
 use super::simflags::SimulationFlags;
 use crate::Session;
 use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::errors::BAD_ARGUMENT;
-use crate::models::simulation::{SimulationOptions, Translated};
+use crate::fault;
+use crate::models::simulation::{self, SimulationOptions, Translated};
+use crate::models::uses::Uses;
 use regex::Regex;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,6 +17,8 @@ use std::sync::Arc;
 pub(super) struct Executable {
     /// The model, whatever becomes of its class afterwards.
     pub model: Arc<Translated>,
+    /// What its classes were.
+    pub classes: Uses,
     /// The settings of the simulation.
     pub options: SimulationOptions,
     /// The ending of its result file.
@@ -23,6 +27,25 @@ pub(super) struct Executable {
     pub filter: Regex,
     /// Flags that every run has.
     pub flags: String,
+}
+
+impl Executable {
+    /// The model, with what is in the files now that it reads.
+    ///
+    /// # Errors
+    /// The files have changed, and so have its classes.
+    pub(super) fn model(&self, session: &mut Session) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+        if session.would_answer(&self.model.files) {
+            return Ok(self.model.clone());
+        }
+        let problem = &self.model.problem;
+        if session.is_unchanged(&self.classes) {
+            return simulation::translated(session, problem);
+        }
+        let fault = fault!(BAD_ARGUMENT, "files that `{problem}` reads have changed since it was built, \
+                                          and its classes as well"; help: "build it again");
+        Err(vec![fault.at(session.call_site())])
+    }
 }
 
 /// The models that were built, by the names of their programs, and what scripts wrote into their

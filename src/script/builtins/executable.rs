@@ -81,7 +81,7 @@ fn run(
     let file = format!("{name}_res.{}", program.format);
     let output = (file.as_str(), &program.filter);
     let model = match flags.csv_input {
-        None => program.model.clone(),
+        None => program.model(session)?,
         Some(_) => openmodelica::driven_model(session, &program.model.problem, &flags)?,
     };
     openmodelica::run(session, &model, &program.options, flags, output).map(|_| ())

@@ -141,7 +141,8 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
         built_models::refuse(session, &prefix, class.to_string());
         return Ok(vec![String::new(), String::new()].into());
     };
-    let program = Executable { model, options: requested, format, filter, flags };
+    let classes = session.uses_of(&model.roots, &Default::default());
+    let program = Executable { model, classes, options: requested, format, filter, flags };
     let init_file = built_models::keep(session, &prefix, program);
     Ok(vec![prefix, init_file].into())
 }

@@ -52,6 +52,8 @@ pub(crate) struct Classes {
     pub history: History,
     /// What was asked of the disk for them.
     pub reads: Reads,
+    /// What the model that is translated asks for itself.
+    pub(super) model_files: Reads,
     /// What they were loaded from.
     pub sources: LoadedSources,
 }
@@ -182,6 +184,11 @@ impl Classes {
     /// Whether classes of this file or package folder are loaded.
     pub(crate) fn has_loaded(&self, path: &Path) -> bool {
         self.files.values().any(|file| file == path)
+    }
+
+    /// The top-level classes that were loaded from this file or folder.
+    pub(super) fn loaded_from(&self, path: &Path) -> Vec<&Name> {
+        self.files.iter().filter(|(_, file)| *file == path).map(|(name, _)| name).collect()
     }
 
     /// Top-level classes were loaded from this file or folder.

@@ -133,13 +133,13 @@ impl Session {
         Ok(())
     }
 
-    /// Loads the classes of a file that a script names, if they are not loaded; naming it there gives
-    /// no permission to read it.
+    /// Loads the classes of a file that a script names, unless they are loaded as they are; naming it
+    /// there gives no permission to read it.
     ///
     /// # Errors
     /// What is wrong with it.
     pub(crate) fn load_path_once(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
-        if !self.has_loaded(path) {
+        if !self.is_as_loaded(path) {
             self.load_path(path)?;
         }
         Ok(())

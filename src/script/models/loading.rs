@@ -25,13 +25,20 @@ impl Session {
         self.classes.revision()
     }
 
-    /// Whether classes of this file or package folder are loaded already.
-    pub(crate) fn has_loaded(&self, path: &Path) -> bool {
+    /// Whether the classes of this file or package folder are loaded as they are: a file is what it was,
+    /// and no other text has defined its classes since. The files of a package are not looked at.
+    pub(crate) fn is_as_loaded(&self, path: &Path) -> bool {
         let Some(mut found) = self.world.find_file(path) else { return false };
         if found.file_name().is_some_and(|name| name == "package.mo") {
             found.pop();
         }
-        self.classes.has_loaded(&found)
+        let names = self.classes.loaded_from(&found);
+        if names.is_empty() || self.world.is_dir(&found) {
+            return !names.is_empty();
+        }
+        let Ok(bytes) = self.world.bytes_of(&found) else { return false };
+        let text = text_of_file(&found, &syntax::decode(&bytes).0);
+        names.into_iter().all(|name| self.classes.sources.is_from(name, &text))
     }
 
     /// Loads a `.mo` file, or a package from its folder or its `package.mo`, or all that lie in a
@@ -151,8 +158,8 @@ impl Session {
     ) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let mut file = syntax::parse_all_of_stored_definition(source, text)?;
         self.classes.invalidate();
-        let shown = path.map(|path| path.display().to_string()).unwrap_or_default();
-        self.classes.history.note("text", &format!("{shown}\n{text}"));
+        let origin = text_of_file(path.unwrap_or(Path::new("")), text);
+        self.classes.history.note("text", &origin);
         let around = path.map_or(Ok(Name::default()), |path| self.package_around(path))?;
         if !around.parts.is_empty() && file.within.is_none() {
             file.within = Some(Spanned { node: around, span: Span::new(source, 0, 0) });
@@ -161,7 +168,7 @@ impl Session {
             self.autoload_class(package)?;
         }
         // Before: a text of which only a part can be loaded changes classes, too.
-        self.classes.sources.note(&names_in(&file), &format!("{shown}\n{text}"));
+        self.classes.sources.note(&names_in(&file), &origin);
         let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
         self.note_versions(&names);
         Ok(names)
@@ -314,4 +321,9 @@ impl Session {
     pub fn source_file(&self, name: &Name) -> Option<PathBuf> {
         self.classes.file_of(&Name::new(name.first())).cloned()
     }
+}
+
+/// A text with the file that it is from.
+fn text_of_file(path: &Path, text: &str) -> String {
+    format!("{}\n{text}", path.display())
 }

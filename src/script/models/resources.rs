@@ -26,8 +26,8 @@ struct ModelFiles {
     packages: BTreeMap<Ident, PathBuf>,
     /// Who compiles C, if that is allowed.
     compiler: Option<Arc<dyn CCompiler>>,
-    /// What a translation that is kept depends on.
-    reads: Reads,
+    /// What a translation that is kept depends on, and what the model itself does.
+    reads: [Reads; 2],
     /// The environment variables that the session has set, and those of the system.
     process: Process,
     permissions: Permissions,
@@ -58,15 +58,16 @@ impl Session {
         let mut seen = BTreeSet::new();
         folders.retain(|folder| seen.insert(folder.clone()));
         let packages = self.classes.packages();
+        let files = Arc::new(Watched::new(self.world.reader(), self.classes.reads.clone()));
         let files: Arc<dyn FileReader> =
-            Arc::new(Watched::new(self.world.reader(), self.classes.reads.clone()));
+            Arc::new(Watched::new(files, self.classes.model_files.clone()));
         let compiler = self.world.c_compiler();
         Resources::new(Arc::new(ModelFiles {
             files,
             folders,
             packages,
             compiler,
-            reads: self.classes.reads.clone(),
+            reads: [self.classes.reads.clone(), self.classes.model_files.clone()],
             process: self.world.process().clone(),
             permissions: self.world.permitted(),
             variables: self.world.env_reader(),
@@ -147,7 +148,7 @@ impl Provide for ModelFiles {
     fn environment_variable(&self, name: &str) -> Result<Option<String>, Fault> {
         let of_system = |name: &str| self.variables.and_then(|variable| variable(name));
         let content = self.process.variable(of_system, self.permissions, name)?;
-        self.reads.note_variable(name, content.as_deref());
+        self.reads.iter().for_each(|reads| reads.note_variable(name, content.as_deref()));
         Ok(content)
     }
 

@@ -6,7 +6,7 @@ use super::final_state::FinalState;
 use super::hardest::{Hardest, hardest};
 use super::outside_ranges::warn_outside;
 use super::places::{in_argument, placed, strings, where_named};
-use super::stored::Request;
+use super::stored::{Reads, Request};
 pub use super::translated::Translated;
 use super::translated::declarations;
 use super::warnings::warn;
@@ -155,7 +155,7 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>
 }
 
 /// Makes a translated model the one that dotted names of scripts refer to. What was set by hand stays
-/// with a model that was translated again because its classes have changed.
+/// with a model that was translated again because its classes or files have changed.
 pub(crate) fn look_at(session: &mut Session, model: &Arc<Translated>) {
     match session.models.current.take() {
         Some(current) if Arc::ptr_eq(&current.model, model) => {
@@ -174,6 +174,10 @@ pub(crate) fn look_at(session: &mut Session, model: &Arc<Translated>) {
 /// Sets again what was set by hand.
 fn carry(session: &mut Session, before: Current, model: &Arc<Translated>) {
     let values = before.set_by_hand();
+    let what = match before.model.files == model.files {
+        true => "the classes of",
+        false => "the files read by",
+    };
     let mut now = Current { model: model.clone(), ..before };
     now.changes.forget_model();
     let is_there = |name: &str| model.program.find_parameter(name).is_ok();
@@ -184,7 +188,7 @@ fn carry(session: &mut Session, before: Current, model: &Arc<Translated>) {
     let problem = &model.problem;
     if !values.is_empty() {
         let message = format!(
-            "the classes of `{problem}` have changed: it is translated again, and what was set by \
+            "{what} `{problem}` have changed: it is translated again, and what was set by \
              hand is set again: {}",
             values.join(", ")
         );
@@ -237,12 +241,12 @@ pub fn translated(
     problem: &str,
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     if let Some((uses, model)) = session.models.get(problem)
-        && session.classes.sources.are_unchanged(uses)
+        && session.is_unchanged(uses)
     {
         return Ok(model.clone());
     }
     let model = Arc::new(found_or_compiled(session, problem)?);
-    let uses = session.classes.sources.uses(&model.roots);
+    let uses = session.uses_of(&model.roots, &model.files);
     session.models.keep(uses, &model);
     Ok(model)
 }
@@ -285,6 +289,7 @@ pub(super) fn compiled(
     session: &mut Session,
     problem: &str,
 ) -> Result<Translated, Vec<Diagnostic>> {
+    session.classes.model_files = Reads::default();
     let flat = flat_model(session, problem)?;
     let roots = session.classes.library.uses();
     let named = strings(&flat);
@@ -298,7 +303,7 @@ pub(super) fn compiled(
         Some(flat) => Translated::new(problem, flat, program),
         None => Translated::without_flat_model(problem, declarations, program),
     };
-    Ok(Translated { roots, ..model })
+    Ok(Translated { roots, files: session.classes.model_files.last_answers(), ..model })
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.

@@ -1,5 +1,6 @@
 //! A model ready to be simulated.
 
+use super::stored::Answers;
 use crate::codegen::Program;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
 use crate::name::Ident;
@@ -21,6 +22,8 @@ pub struct Translated {
     pub program: Arc<Program>,
     /// The top-level names on which it depends.
     pub(crate) roots: BTreeSet<Ident>,
+    /// What it read of files and the environment when it was translated: tables above all.
+    pub(crate) files: Answers,
     /// The flat model; a model that was kept, or is large, has none until it is requested.
     pub(super) flat: OnceLock<FlatModel>,
 }
@@ -67,8 +70,9 @@ impl Translated {
         declarations: Declarations,
         program: Arc<Program>,
     ) -> Translated {
-        let (problem, roots, flat) = (problem.to_owned(), BTreeSet::new(), OnceLock::new());
-        Translated { problem, declarations, program, roots, flat }
+        let (roots, files) = (BTreeSet::new(), Answers::new());
+        let (problem, flat) = (problem.to_owned(), OnceLock::new());
+        Translated { problem, declarations, program, roots, files, flat }
     }
 
     /// The names of the states, in their order.

@@ -1,8 +1,9 @@
-//! On which classes a translation depends: those at the top level that were looked at, whether they
-//! were there or not, each with the source that it was loaded from. Whatever else is loaded afterwards
-//! does not concern the model.
+//! On what a translation depends: classes at the top level that were looked at, whether they were
+//! there or not, each with the source that it was loaded from, and the files that the model reads.
+//! Whatever else is loaded afterwards does not concern the model.
 
-use super::stored::{Digest, digest};
+use super::stored::{Answers, Digest, digest};
+use crate::Session;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,9 +12,29 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug, Default)]
 pub struct LoadedSources(BTreeMap<Name, Digest>);
 
-/// The top-level names on which something depends, and what they meant.
+/// What something depends on.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Uses(BTreeMap<Ident, Digest>);
+pub struct Uses {
+    /// Top-level names, and what they meant.
+    classes: BTreeMap<Ident, Digest>,
+    files: Answers,
+}
+
+impl Session {
+    /// What a model with these classes at the top level and these files depends on.
+    pub(crate) fn uses_of(&self, roots: &BTreeSet<Ident>, files: &Answers) -> Uses {
+        let sources = &self.classes.sources;
+        let classes = roots.iter().map(|root| (*root, sources.of(*root))).collect();
+        Uses { classes, files: files.clone() }
+    }
+
+    /// Whether classes and files are still what they were.
+    pub(crate) fn is_unchanged(&self, uses: &Uses) -> bool {
+        let sources = &self.classes.sources;
+        uses.classes.iter().all(|(root, text)| sources.of(*root) == *text)
+            && self.would_answer(&uses.files)
+    }
+}
 
 impl LoadedSources {
     /// Classes were loaded from a text.
@@ -37,14 +58,9 @@ impl LoadedSources {
         self.0.clear();
     }
 
-    /// What these top-level names mean.
-    pub fn uses(&self, roots: &BTreeSet<Ident>) -> Uses {
-        Uses(roots.iter().map(|root| (*root, self.of(*root))).collect())
-    }
-
-    /// Whether the names still mean what they did.
-    pub(crate) fn are_unchanged(&self, uses: &Uses) -> bool {
-        uses.0.iter().all(|(root, text)| self.of(*root) == *text)
+    /// Whether a class is what this text says.
+    pub(super) fn is_from(&self, name: &Name, text: &str) -> bool {
+        self.0.get(name) == Some(&digest(text.as_bytes()))
     }
 
     /// What a top-level name means.

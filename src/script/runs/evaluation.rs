@@ -15,11 +15,12 @@ use crate::registry::BAD_OPTION;
 impl Session {
     /// The evaluator of a request, made unless it is at hand: a run begins with it.
     fn prepared(&mut self, request: &Request) -> Result<Prepared, Failure> {
+        self.load_model_of(request)?;
         let in_use = self.in_use(&request.model, &request.question.parameters)?;
         self.identification();
         match self.take_prepared(request, &in_use) {
             Some(prepared) => Ok(prepared),
-            None => self.prepare(request),
+            None => self.prepare(request, &in_use),
         }
     }
 

@@ -131,13 +131,13 @@ impl Session {
         }
     }
 
-    /// Loads the file or folder that the model of a request is in.
+    /// Loads the file or folder that the model of a request is in, unless its classes are those that
+    /// are loaded.
     pub(super) fn load_model_of(&mut self, request: &Request) -> Result<(), Failure> {
-        let path = Path::new(&request.path);
-        if !request.path.is_empty() && !self.has_loaded(path) {
-            self.load_path(path)?;
+        match request.path.is_empty() {
+            true => Ok(()),
+            false => Ok(self.load_path_once(Path::new(&request.path))?),
         }
-        Ok(())
     }
 
     /// Measured X in the unit of the model; `None` where they are in it.
@@ -196,11 +196,13 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn prepare(&mut self, request: &Request) -> Result<Prepared, Failure> {
-        self.load_model_of(request)?;
-        let in_use = self.in_use(&request.model, &request.question.parameters)?;
+    pub(super) fn prepare(
+        &mut self,
+        request: &Request,
+        in_use: &InUse,
+    ) -> Result<Prepared, Failure> {
         let request = Request { model: in_use.shown.clone(), ..request.clone() };
-        let (translated, is_driven) = self.translated_for(&request, &in_use)?;
+        let (translated, is_driven) = self.translated_for(&request, in_use)?;
         let model = match is_driven {
             true => static_curve::model(&request.model, &translated, &request.question.x_name)?,
             false => CompiledModel::new(&request.model, translated.program.clone()),
@@ -220,12 +222,12 @@ impl Session {
         let evaluator = Evaluator::on(Arc::new(model), question, &processors)?;
         self.note_idle_ranks(evaluator.alone());
         let roots = static_curve::without_class_around(&translated.roots);
-        let (uses, class) = (self.classes.sources.uses(&roots), translated.problem.clone());
+        let (uses, class) = (self.uses_of(&roots, &translated.files), translated.problem.clone());
         Ok(Prepared { request, uses, class, evaluator })
     }
 
-    /// The evaluator of this request, if it is at hand and neither the classes of its model nor what
-    /// was set by hand have changed since.
+    /// The evaluator of this request, if it is at hand and neither the classes of its model, the files
+    /// that it reads nor what was set by hand have changed since.
     pub(super) fn take_prepared(&mut self, request: &Request, in_use: &InUse) -> Option<Prepared> {
         let is_it = |known: &Prepared| {
             known.request.model == in_use.shown
@@ -235,7 +237,7 @@ impl Session {
         let prepared = &mut self.extension::<Identification>().prepared;
         if let Some(place) = prepared.iter().position(is_it) {
             let known = prepared.remove(place);
-            return self.classes.sources.are_unchanged(&known.uses).then_some(known);
+            return self.is_unchanged(&known.uses).then_some(known);
         }
         if prepared.len() >= PREPARED {
             prepared.remove(0);

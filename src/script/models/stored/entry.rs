@@ -1,6 +1,6 @@
 //! A model as it is kept.
 
-use super::reads::{Answer, Digest, Question, Watched, ask};
+use super::reads::{Answers, Digest, Question, Watched, ask};
 use crate::Session;
 use crate::codegen::{Program, bytes_of};
 use crate::diag::Diagnostic;
@@ -9,18 +9,20 @@ use crate::name::Ident;
 use crate::source::{SourceId, with_source_table, with_sources};
 use crate::syntax;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 
 /// A model, and what must be as it was.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Entry {
-    answers: BTreeMap<Question, Answer>,
+    answers: Answers,
     searches: Vec<(Ident, bool)>,
     /// The history of the classes after the translation.
     after: Digest,
     sources: Vec<Text>,
     roots: BTreeSet<Ident>,
+    /// The files that the model itself reads, some of the answers.
+    files: Answers,
     /// Declarations, program and warnings.
     content: Vec<u8>,
 }
@@ -52,6 +54,7 @@ impl Entry {
             after: session.classes.history.digest(),
             sources: sources.collect::<Option<_>>()?,
             roots: model.roots.clone(),
+            files: model.files.clone(),
             content: content?,
         };
         bytes_of(&entry)
@@ -64,7 +67,7 @@ impl Entry {
     /// The sources of the entry, if the disk answers as it did.
     pub(super) fn sources_if_unchanged(&self, session: &Session) -> Option<Vec<SourceId>> {
         let files = Watched::new(session.world.reader(), session.classes.reads.clone());
-        let variable = |name: &str| session.world.environment_variable(name).ok().flatten();
+        let variable = |name: &str| session.variable_of_models(name);
         let mut contents = HashMap::new();
         for (question, answer) in &self.answers {
             let (now, bytes) = ask(&files, &variable, question);
@@ -111,7 +114,8 @@ impl Entry {
                 postcard::from_bytes(&self.content).ok()?;
             let program = Program::from_bytes(program)?;
             let model = Translated::without_flat_model(problem, declarations, program);
-            Some((Translated { roots: self.roots.clone(), ..model }, warnings))
+            let (roots, files) = (self.roots.clone(), self.files.clone());
+            Some((Translated { roots, files, ..model }, warnings))
         })
     }
 }

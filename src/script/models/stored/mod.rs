@@ -11,6 +11,7 @@ mod reads;
 mod state;
 
 pub use history::History;
+pub(crate) use reads::Answers;
 pub(super) use reads::{Digest, digest};
 pub use reads::{Reads, Watched};
 
@@ -20,7 +21,21 @@ use crate::Session;
 use crate::diag::Diagnostic;
 use crate::world::Store;
 use entry::Entry;
+use reads::ask;
 use std::sync::Arc;
+
+impl Session {
+    /// Whether the disk and the environment would answer the same now.
+    pub(crate) fn would_answer(&self, answers: &Answers) -> bool {
+        let (files, variable) = (self.world.reader(), |name: &str| self.variable_of_models(name));
+        answers.iter().all(|(question, answer)| ask(&*files, &variable, question).0 == *answer)
+    }
+
+    /// An environment variable as models read it.
+    fn variable_of_models(&self, name: &str) -> Option<String> {
+        self.world.environment_variable(name).ok().flatten()
+    }
+}
 
 /// A translation that is going to be done, or found.
 pub struct Request {

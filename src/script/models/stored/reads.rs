@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// SHA-256.
-pub(in crate::models) type Digest = [u8; 32];
+pub(crate) type Digest = [u8; 32];
 
 /// The digest of bytes.
 pub(in crate::models) fn digest(bytes: &[u8]) -> Digest {
@@ -19,7 +19,7 @@ pub(in crate::models) fn digest(bytes: &[u8]) -> Digest {
 
 /// A question to the disk.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) enum Question {
+pub(crate) enum Question {
     /// What is in a file.
     Read(PathBuf),
     /// What lies in a folder.
@@ -31,7 +31,10 @@ pub(super) enum Question {
 }
 
 /// The digest of what was found, if there was anything.
-pub(super) type Answer = Option<Digest>;
+pub(crate) type Answer = Option<Digest>;
+
+/// Questions with their answers.
+pub(crate) type Answers = BTreeMap<Question, Answer>;
 
 /// All questions of a session with their answers; clones note together.
 #[derive(Debug, Clone, Default)]
@@ -39,7 +42,7 @@ pub struct Reads(Arc<Mutex<Notes>>);
 
 #[derive(Debug, Default)]
 struct Notes {
-    answers: BTreeMap<Question, Answer>,
+    answers: Answers,
     /// Whether a question had two answers: classes may come from what is there no longer.
     has_changed: bool,
     /// The files of sources.
@@ -61,9 +64,14 @@ impl Reads {
     }
 
     /// The answers, if none has changed meanwhile.
-    pub(super) fn answers(&self) -> Option<BTreeMap<Question, Answer>> {
+    pub(super) fn answers(&self) -> Option<Answers> {
         let notes = self.notes();
         (!notes.has_changed).then(|| notes.answers.clone())
+    }
+
+    /// What was asked, with the last answers.
+    pub(in crate::models) fn last_answers(&self) -> Answers {
+        self.notes().answers.clone()
     }
 
     /// An environment variable was read.
