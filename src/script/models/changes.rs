@@ -86,7 +86,12 @@ impl Changes {
             Given::Array(dims, _) => dims,
             Given::Number(_) | Given::Text(_) => &[],
         };
-        if name.contains('[') || variable.is_final || variable.dims != dims {
+        // Changes before this one may have given it another size.
+        let has_size = match self.is_empty() {
+            true => variable.dims == dims,
+            false => variable.dims.len() == dims.len(),
+        };
+        if name.contains('[') || variable.is_final || !has_size {
             return None;
         }
         if variable.variability == Variability::Parameter && !is_start {

@@ -3,7 +3,7 @@
 use super::addressing::{Addressed, addressed, all_indices, flat_name};
 use super::changes::{Changed, Given};
 use super::ranges::Range;
-use super::translated::Translated;
+use super::translated::{Declaration, Translated};
 use super::typed::{number_in, number_of, unquoted};
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault, suggest};
@@ -55,6 +55,10 @@ impl Session {
         };
         let (target, suffix) = without_start(target);
         let found = self.models.shaped().find_map(|model| addressed(&model, &target));
+        let found = match found {
+            Some(found) if !found.dims.is_empty() => self.resized(found, &target, value),
+            other => other,
+        };
         let Some(found) = found else {
             let Some(number) = value.as_real() else {
                 return Err(match self.models.last() {
@@ -72,6 +76,35 @@ impl Session {
         let before = self.models.current.clone();
         let done = self.set_elements(&found, suffix, &numbers);
         done.inspect_err(|_| self.models.current = before)
+    }
+
+    /// An array of the model translated last as it is with the values that scripts gave to structural
+    /// parameters: its size may follow from them. Where these values alone make no model, it may be
+    /// this array that they lack: it has the size of what is assigned to all of it.
+    fn resized(
+        &mut self,
+        found: Addressed,
+        target: &ComponentReference,
+        value: &Value,
+    ) -> Option<Addressed> {
+        let Some(last) = self.models.last().cloned() else { return Some(found) };
+        if let Ok(model) = self.shaped_or_errors(&last) {
+            return addressed(&model, target);
+        }
+        let is_whole = target.parts.iter().all(|part| part.subscripts.is_empty());
+        let rank = found.declaration.dims.len();
+        if !is_whole || found.dims.len() != rank || value.dims().len() != rank {
+            return Some(found);
+        }
+        let dims = value.dims().to_vec();
+        let declaration = Declaration { dims: dims.clone(), ..found.declaration };
+        let whole = flat_name(target)?;
+        let element = |at: Vec<i64>| {
+            let at: Vec<String> = at.iter().map(i64::to_string).collect();
+            format!("{whole}[{}]", at.join(","))
+        };
+        let names = all_indices(&dims).into_iter().map(element).collect();
+        Some(Addressed { names, dims, declaration })
     }
 
     /// Gives scalars values: each by itself, or with the array that it is an element of where that

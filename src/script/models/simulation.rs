@@ -163,11 +163,24 @@ pub(crate) fn look_at(session: &mut Session, model: &Arc<Translated>) {
         }
         Some(current) if current.model.problem == model.problem => carry(session, current, model),
         Some(current) => {
-            session.models.leave(&current);
+            leave(session, &current);
             session.models.refer_anew_to(model);
             note_dropped(session, model);
         }
         None => session.models.refer_anew_to(model),
+    }
+}
+
+/// Another model takes the place of the current one, or the model as it is translated anew.
+fn leave(session: &mut Session, before: &Current) {
+    session.models.leave(before);
+    if !before.imported.is_empty() {
+        let message = format!(
+            "the start values imported for `{}` hold no longer: simulations begin as their model \
+             says; the imported times stay",
+            before.model.problem
+        );
+        session.note(VALUES_DROPPED, message);
     }
 }
 
@@ -225,7 +238,7 @@ pub fn translate_anew(
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     let model = translated(session, problem)?;
     if let Some(before) = session.models.current.take() {
-        session.models.leave(&before);
+        leave(session, &before);
     }
     session.models.take_left(&model.problem);
     session.models.refer_anew_to(&model);
@@ -699,18 +712,26 @@ impl Session {
         &mut self,
         last: &Arc<Translated>,
     ) -> Result<Arc<Translated>, Diagnostic> {
+        self.shaped_or_errors(last).map_err(|mut errors| {
+            let last = errors.pop();
+            errors.into_iter().for_each(|error| self.report(error));
+            let call = self.call_site();
+            last.unwrap_or_else(|| Fault::new(BAD_PARAMETER_VALUE, "no model").at(call))
+        })
+    }
+
+    /// As [`Session::shaped_model`], with all that is wrong where it cannot be translated.
+    pub(super) fn shaped_or_errors(
+        &mut self,
+        last: &Arc<Translated>,
+    ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
         let Some(mut current) = self.models.current.take() else { return Ok(last.clone()) };
         let changed = match current.changes.is_empty() {
             true => Ok(current.model.clone()),
             false => self.changed_model(&current.model.clone(), &mut current.changes),
         };
         self.models.current = Some(current);
-        changed.map_err(|mut errors| {
-            let last = errors.pop();
-            errors.into_iter().for_each(|error| self.report(error));
-            let call = self.call_site();
-            last.unwrap_or_else(|| Fault::new(BAD_PARAMETER_VALUE, "no model").at(call))
-        })
+        changed
     }
 
     /// The model with these changes, translated again if need be.
