@@ -329,10 +329,11 @@ fn modified(
             rest => modification_at(&mut whole.arguments, rest),
         };
         let Some(part) = part else { return false };
+        if new.binding.is_some() || new.arguments.is_empty() {
+            part.binding = new.binding;
+        }
         if !new.arguments.is_empty() {
             part.arguments = new.arguments;
-        } else {
-            part.binding = new.binding;
         }
         if let Some(whole) = &mut component.modification {
             prune(&mut whole.arguments);
