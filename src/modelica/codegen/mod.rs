@@ -65,7 +65,7 @@ pub use filter::{Uncertainty, gain, rate};
 pub use linear_part::{InputChain, LinearEntry, LinearPart, ORDERS};
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
-pub use stored::bytes_of;
+pub use stored::{bytes_of, is_reader};
 
 /// From now on nothing becomes machine code in this process: for systems that forbid memory which is
 /// made executable, and to see that the results are the same to the bit.

@@ -3,6 +3,7 @@
 use super::program::Program;
 use crate::budget::has_memory;
 use crate::symbolic::reading_variables;
+use memchr::memmem;
 use postcard::ser_flavors::Size;
 use serde::Serialize;
 use std::sync::Arc;
@@ -11,10 +12,18 @@ use std::sync::Arc;
 /// would take a gigabyte, twice, beside what its simulation needs.
 const MOST_BYTES: usize = 256 << 20;
 
+/// What programs as bytes begin with: the sources that say what the bytes mean.
+const FORMAT: &str = concat!("gapilib program ", env!("GAPILIB_SOURCES"));
+
+/// Whether a library that simulates programs reads those of this one: it has the same format in it.
+pub fn is_reader(library: &[u8]) -> bool {
+    memmem::find(library, FORMAT.as_bytes()).is_some()
+}
+
 impl Program {
     /// The bytes; `None` where it has what no file can hold, functions in C, or is too large.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
-        bytes_of(&(self.n_variables(), self))
+        bytes_of(&(FORMAT, self.n_variables(), self))
     }
 
     fn n_variables(&self) -> u32 {
@@ -23,8 +32,13 @@ impl Program {
 
     /// The program that became these bytes by [`Program::to_bytes`] of this version. Places are
     /// those of [`with_sources`](crate::source::with_sources). `None` where something in them refers to
-    /// what is not there.
+    /// what is not there, and of another version.
     pub fn from_bytes(bytes: &[u8]) -> Option<Arc<Program>> {
+        let (format, bytes): (&str, &[u8]) = postcard::take_from_bytes(bytes).ok()?;
+        // As it stands in a library: that is how others find it there.
+        if format != std::hint::black_box(FORMAT) {
+            return None;
+        }
         let (n_variables, bytes): (u32, &[u8]) = postcard::take_from_bytes(bytes).ok()?;
         let read = || postcard::from_bytes(bytes).ok();
         let mut program: Program = reading_variables(n_variables, read)?;

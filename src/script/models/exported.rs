@@ -9,8 +9,8 @@
 use super::simulation::{self, Translated};
 use crate::Session;
 use crate::causalize;
-use crate::codegen::Program;
 use crate::codegen::errors::STRUCTURAL_PARAMETER;
+use crate::codegen::{Program, is_reader};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::errors::FILE_ERROR;
 use crate::fault;
@@ -146,6 +146,11 @@ pub fn exported(
         );
         vec![fault.at(at)]
     })?;
+    if !is_reader(&runtime) {
+        let fault = fault!(FILE_ERROR, "the runtime of units is not of this program: it would refuse the unit";
+            help: "unpack the whole release, or build all packages of the workspace");
+        return Err(vec![fault.at(at)]);
+    }
     let archive = unit.archive(&runtime).at(at).map_err(|error| vec![error])?;
     archive.to_bytes().map_err(|error| vec![Fault::new(NOT_SUPPORTED, error.to_string()).at(at)])
 }

@@ -29,6 +29,18 @@ const DECAY: &str = "package P model Decay parameter Real k(unit = \"1/s\") = 1;
                      Real x(start = 1, fixed = true); equation der(x) = -k*x; \
                      annotation(experiment(StopTime = 1, Tolerance = 1e-9)); end Decay; end P;\n";
 
+/// The library of another version computes other things with the same bytes.
+#[test]
+fn a_unit_is_not_written_with_the_library_of_another_version() {
+    let here = folder(&[("P.mo", DECAY), ("old.so", "of another version")]);
+    let mut child = command(here.path(), &["export-fmu", "P.mo", "-o", "unit.fmu"]);
+    let output = child.env("GAPILIB_FMU_RUNTIME", here.path().join("old.so")).output();
+    let output = output.expect("it ends");
+    let errors = String::from_utf8(output.stderr).expect("text");
+    assert!(errors.contains("the runtime of units is not of this program"), "{errors}");
+    assert!(!here.path().join("unit.fmu").exists());
+}
+
 /// Scripts of both dialects write units with the values that they have set, and simulate them.
 #[test]
 fn scripts_write_and_simulate_units() {
