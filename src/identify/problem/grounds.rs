@@ -7,8 +7,8 @@ use super::Profile;
 pub struct Grounds {
     /// Linear intervals, not cut at the ranges.
     pub(super) linear: Vec<Option<[f64; 2]>>,
-    /// How far the linear optimum lies beyond the end at which a parameter stands, in standard errors,
-    /// and the reach of the linear interval to both sides.
+    /// How many standard errors the linear optimum lies beyond the end of the range that a parameter is
+    /// at, and the reach of the linear interval to both sides.
     pub(super) pulls: Vec<Option<(f64, [f64; 2])>>,
     /// Which parameters have a derivative that vanishes at the best values.
     pub(super) flat: Vec<bool>,

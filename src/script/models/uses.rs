@@ -3,7 +3,6 @@
 //! Whatever else is loaded afterwards does not concern the model.
 
 use super::stored::{Answers, Digest, digest};
-use crate::Session;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,19 +19,21 @@ pub struct Uses {
     files: Answers,
 }
 
-impl Session {
+impl Uses {
     /// What a model with these classes at the top level and these files depends on.
-    pub(crate) fn uses_of(&self, roots: &BTreeSet<Ident>, files: &Answers) -> Uses {
-        let sources = &self.classes.sources;
+    pub(super) fn new(sources: &LoadedSources, roots: &BTreeSet<Ident>, files: &Answers) -> Uses {
         let classes = roots.iter().map(|root| (*root, sources.of(*root))).collect();
         Uses { classes, files: files.clone() }
     }
 
-    /// Whether classes and files are still what they were.
-    pub(crate) fn is_unchanged(&self, uses: &Uses) -> bool {
-        let sources = &self.classes.sources;
-        uses.classes.iter().all(|(root, text)| sources.of(*root) == *text)
-            && self.would_answer(&uses.files)
+    /// Whether the classes are still what they were.
+    pub(super) fn has_classes(&self, sources: &LoadedSources) -> bool {
+        self.classes.iter().all(|(root, text)| sources.of(*root) == *text)
+    }
+
+    /// What was read of files and the environment.
+    pub(super) fn files(&self) -> &Answers {
+        &self.files
     }
 }
 

@@ -16,15 +16,28 @@ pub(super) use reads::{Digest, digest};
 pub use reads::{Reads, Watched};
 
 use super::translated::Translated;
+use super::uses::Uses;
 use super::warnings::warn;
 use crate::Session;
 use crate::diag::Diagnostic;
+use crate::name::Ident;
 use crate::world::Store;
 use entry::Entry;
 use reads::ask;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl Session {
+    /// What a model with these classes at the top level and these files depends on.
+    pub(crate) fn uses_of(&self, roots: &BTreeSet<Ident>, files: &Answers) -> Uses {
+        Uses::new(&self.classes.sources, roots, files)
+    }
+
+    /// Whether classes and files are still what they were.
+    pub(crate) fn is_unchanged(&self, uses: &Uses) -> bool {
+        uses.has_classes(&self.classes.sources) && self.would_answer(uses.files())
+    }
+
     /// Whether the disk and the environment would answer the same now.
     pub(crate) fn would_answer(&self, answers: &Answers) -> bool {
         let (files, variable) = (self.world.reader(), |name: &str| self.variable_of_models(name));
