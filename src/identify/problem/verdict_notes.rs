@@ -86,19 +86,31 @@ fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
             remedy(parameter)
         ),
     };
+    let is_twice = parameter.open == [false; 2] && has_same_ends(&parameter.held);
     // Where the interval ends and the data do not end it.
     let beyond = |side: usize| match (parameter.open[side], &parameter.held[side][..]) {
         (true, _) => Some(format!("the end {} of its search range", [&min, &max][side])),
         (false, []) => None,
-        (false, held) => Some(format!("{}, where {}", [&low, &high][side], RangeEnd::words(held))),
+        (false, held) => {
+            let place = format!(", where {}", RangeEnd::words(held));
+            let place = if is_twice { "" } else { &place };
+            Some(format!("{}{place}", [&low, &high][side]))
+        }
     };
     let what = match [beyond(0), beyond(1)] {
         [Some(_), Some(_)] if parameter.open == [true; 2] => {
             format!("it can have any value in its whole search range, {min} to {max}")
         }
-        [Some(below), Some(above)] => format!(
-            "they do not bound it from below, down to {below}, nor from above, up to {above}"
-        ),
+        [Some(below), Some(above)] => {
+            let both = match is_twice {
+                true => format!(", both where {}", RangeEnd::words(&parameter.held[0])),
+                false => String::new(),
+            };
+            format!(
+                "they do not bound it from below, down to {below}, nor from above, up to \
+                 {above}{both}"
+            )
+        }
         [None, None] => format!("it can have any value between {low} and {high}"),
         [None, Some(above)] => {
             format!("it is at least {low}; they do not bound it from above, up to {above}")
@@ -136,17 +148,29 @@ fn beyond(parameter: &SolvedParameter, [pull, limit]: [f64; 2], alone: bool) -> 
 
 /// That the range of another parameter ends an interval.
 fn within_ranges(parameter: &SolvedParameter) -> Option<Finding> {
-    let sides = [("below", &parameter.held[0]), ("above", &parameter.held[1])];
-    let held = sides.into_iter().filter(|(_, held)| !held.is_empty());
-    let ends: Vec<String> =
-        held.map(|(side, held)| format!("{side} where {}", RangeEnd::words(held))).collect();
+    let ends = ending_sides(&parameter.held)?;
     let sentence = format!(
-        "The 95 % interval of {} ends {}: with a wider range it would be wider.",
-        parameter.name,
-        ends.join(", and ")
+        "The 95 % interval of {} ends {ends}: with a wider range it would be wider.",
+        parameter.name
     );
     let finding = Finding::new(FindingKind::Interval, sentence).severity(Severity::Information);
-    (!ends.is_empty()).then(|| finding.parameters([parameter.name.as_str()]))
+    Some(finding.parameters([parameter.name.as_str()]))
+}
+
+/// On which sides the ranges of other parameters end an interval, and where; `None` if on none.
+fn ending_sides(held: &[Vec<RangeEnd>; 2]) -> Option<String> {
+    if has_same_ends(held) {
+        return Some(format!("below and above where {}", RangeEnd::words(&held[0])));
+    }
+    let sides = ["below", "above"].into_iter().zip(held).filter(|(_, held)| !held.is_empty());
+    let ends: Vec<String> =
+        sides.map(|(side, held)| format!("{side} where {}", RangeEnd::words(held))).collect();
+    (!ends.is_empty()).then(|| ends.join(", and "))
+}
+
+/// Whether the same ends of ranges end an interval on both sides.
+fn has_same_ends([below, above]: &[Vec<RangeEnd>; 2]) -> bool {
+    !below.is_empty() && below == above
 }
 
 fn nonlinear(parameter: &SolvedParameter, linear: [f64; 2]) -> Finding {
@@ -176,4 +200,38 @@ pub(crate) fn profile_findings(solution: &Solution, found: &Profiles) -> Option<
     );
     let finding = Finding::new(FindingKind::OtherMinimum, sentence);
     Some(finding.severity(Severity::Serious))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ends_an_interval_on_both_sides_is_said_once() {
+        let end = |name: &str, end: f64| RangeEnd { parameter: name.to_owned(), end };
+        let (b, c) = (end("b", 0.5), end("c", -2.0));
+        for (below, above, expected) in [
+            (vec![], vec![], ""),
+            (vec![b.clone()], vec![], "below where b is at the end 0.5 of its search range"),
+            (
+                vec![b.clone()],
+                vec![b.clone()],
+                "below and above where b is at the end 0.5 of its search range",
+            ),
+            (
+                vec![b.clone(), c.clone()],
+                vec![b.clone(), c.clone()],
+                "below and above where b is at the end 0.5 and c is at the end -2 of their search \
+                 ranges",
+            ),
+            (
+                vec![b.clone()],
+                vec![end("b", 1.0)],
+                "below where b is at the end 0.5 of its search range, and above where b is at the \
+                 end 1 of its search range",
+            ),
+        ] {
+            assert_eq!(ending_sides(&[below, above]).unwrap_or_default(), expected);
+        }
+    }
 }
