@@ -187,6 +187,7 @@ impl Model for ImportedModel {
             differentiates: false,
             values: Vec::new(),
             cause: String::new(),
+            is_hopeless: false,
         }))
     }
 
@@ -206,6 +207,8 @@ struct ImportedInstance {
     values: Vec<f64>,
     /// Why the last simulation failed.
     cause: String,
+    /// Whether it was one of many whose calls did not return.
+    is_hopeless: bool,
 }
 
 impl Instance for ImportedInstance {
@@ -226,6 +229,7 @@ impl Instance for ImportedInstance {
             if failure.class == FailureClass::Derivatives {
                 self.refusal = Some(failure.message.clone());
             }
+            self.is_hopeless = failure.class == FailureClass::Hopeless;
             self.cause = failure.message;
             SimError { time: failure.time, kind: kind(failure.class), offending: None }
         })
@@ -250,6 +254,10 @@ impl Instance for ImportedInstance {
         self.refusal.clone().filter(|_| self.differentiates)
     }
 
+    fn is_hopeless(&self) -> bool {
+        self.is_hopeless
+    }
+
     fn explain(&self, _: &SimError) -> String {
         self.cause.clone()
     }
@@ -260,7 +268,8 @@ fn kind(class: FailureClass) -> SimErrorKind {
         FailureClass::Instance
         | FailureClass::Unit
         | FailureClass::Derivatives
-        | FailureClass::Process => {
+        | FailureClass::Process
+        | FailureClass::Hopeless => {
             SimErrorKind::Evaluation(Failure::Function { function: 0, at: 0, reason: 0 })
         }
         FailureClass::Solver => SimErrorKind::StepSize,

@@ -186,6 +186,10 @@ pub trait Instance: Send {
     fn sensitivity_refusal(&self) -> Option<String> {
         None
     }
+    /// Whether the simulation that has failed is the last of so many that no other is worth its time.
+    fn is_hopeless(&self) -> bool {
+        false
+    }
     /// Why a simulation failed, in one sentence without the time.
     fn explain(&self, error: &SimError) -> String;
     /// The same with the time and the place in the model, where it has one.

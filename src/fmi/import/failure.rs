@@ -22,6 +22,8 @@ pub enum FailureClass {
     Derivatives,
     /// The process of the unit ended, or a call of it did not.
     Process,
+    /// Calls did not end in so many simulations that no other is worth its time.
+    Hopeless,
 }
 
 /// A failed simulation.

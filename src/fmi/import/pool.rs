@@ -71,17 +71,52 @@ pub enum Ended {
 const GRACE: f64 = 1.0;
 
 /// After so many simulations whose calls did not return, and none that has ended otherwise, there are no
-/// more: each costs the time that a call may take.
+/// more: each costs the time that a call or a simulation may take.
 const MOST_HUNG: usize = 5;
+/// After so many in a row, in a unit that others have simulated, a search ends: where half of all individuals
+/// hang, it is one in a million that these do by chance.
+const MOST_HUNG_IN_A_ROW: usize = 20;
 
 /// Processes of one unit.
 pub struct Pool {
     start: Box<dyn Start>,
     idle: Mutex<Vec<Worker>>,
-    /// How the simulations hung that came before the first one that did not; `None` after that.
-    hung: Mutex<Option<Vec<String>>>,
+    hung: Mutex<Hung>,
     messages: Mutex<Vec<LogMessage>>,
     next_plan: AtomicU64,
+}
+
+/// Simulations whose calls did not return.
+#[derive(Default)]
+struct Hung {
+    /// How many came since the last one that did.
+    in_a_row: usize,
+    /// How the first of these ended.
+    first: String,
+    /// Whether any simulation has ended otherwise.
+    has_returned: bool,
+}
+
+impl Hung {
+    /// One more; whether it is one too many.
+    fn add(&mut self, message: &str) -> bool {
+        if self.in_a_row == 0 {
+            message.clone_into(&mut self.first);
+        }
+        self.in_a_row += 1;
+        self.in_a_row >= if self.has_returned { MOST_HUNG_IN_A_ROW } else { MOST_HUNG }
+    }
+
+    /// What is said of one too many.
+    fn sentence(&self) -> String {
+        let Hung { in_a_row, first, has_returned } = self;
+        match has_returned {
+            true => format!("{first}; {in_a_row} simulations in a row ended so"),
+            false => format!(
+                "{first}; after {in_a_row} simulations that ended so, and no other, there are no more"
+            ),
+        }
+    }
 }
 
 /// A process with the plans that it knows.
@@ -113,7 +148,7 @@ impl Pool {
         Pool {
             start,
             idle: Mutex::default(),
-            hung: Mutex::new(Some(Vec::new())),
+            hung: Mutex::default(),
             messages: Mutex::default(),
             next_plan: AtomicU64::new(0),
         }
@@ -142,7 +177,7 @@ impl Pool {
     ) -> Result<Statistics, SimulationFailure> {
         out.reset(plan.plan.observed.len());
         let failure = |ended: Ended| self.failure(settings.start, ended);
-        self.refuse_hopeless().map_err(failure)?;
+        self.refuse_hopeless(settings.start)?;
         let idle = locked(&self.idle).pop();
         let mut worker = match idle {
             Some(worker) => worker,
@@ -153,7 +188,7 @@ impl Pool {
             }
         };
         let answer = worker.simulate((plan, values), settings).map_err(failure)?;
-        *locked(&self.hung) = None;
+        *locked(&self.hung) = Hung { has_returned: true, ..Hung::default() };
         // One that was cancelled takes no requests any more.
         if !settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             locked(&self.idle).push(worker);
@@ -164,30 +199,28 @@ impl Pool {
     }
 
     /// Refuses to simulate a unit that has done nothing but hang.
-    fn refuse_hopeless(&self) -> Result<(), Ended> {
-        match &*locked(&self.hung) {
-            Some(all) if all.len() >= MOST_HUNG => Err(Ended::Itself(format!(
-                "{}; after {MOST_HUNG} simulations that ended so, and no other, there are no more",
-                all[0]
-            ))),
-            _ => Ok(()),
+    fn refuse_hopeless(&self, start: f64) -> Result<(), SimulationFailure> {
+        let hung = locked(&self.hung);
+        match !hung.has_returned && hung.in_a_row >= MOST_HUNG {
+            true => Err(SimulationFailure::new(start, FailureClass::Hopeless, hung.sentence())),
+            false => Ok(()),
         }
     }
 
     /// What the end of a process means for its simulation.
     fn failure(&self, start: f64, ended: Ended) -> SimulationFailure {
+        let is_hung = matches!(ended, Ended::Hung(_) | Ended::TooSlow);
         let (class, message) = match ended {
-            Ended::Itself(message) => (FailureClass::Process, message),
-            Ended::Hung(message) => {
-                if let Some(all) = &mut *locked(&self.hung) {
-                    all.push(message.clone());
-                }
-                (FailureClass::Process, message)
-            }
+            Ended::Itself(message) | Ended::Hung(message) => (FailureClass::Process, message),
             Ended::Cancelled => (FailureClass::Cancelled, "it was cancelled".to_owned()),
+            // What looks at the clock between steps has not come to it.
             Ended::TooSlow => (FailureClass::Time, "it takes more time than allowed".to_owned()),
         };
-        SimulationFailure::new(start, class, message)
+        let mut hung = locked(&self.hung);
+        match is_hung && hung.add(&message) {
+            true => SimulationFailure::new(start, FailureClass::Hopeless, hung.sentence()),
+            false => SimulationFailure::new(start, class, message),
+        }
     }
 
     fn keep(&self, messages: Vec<LogMessage>) {
@@ -220,5 +253,85 @@ impl Worker {
         self.process.send(&request)?;
         let seconds = settings.time_budget.map(|budget| budget.seconds + GRACE);
         self.process.answer(settings.cancel.as_deref(), seconds)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::import::InterfaceKind;
+    use std::collections::VecDeque;
+
+    /// What the simulations come to, one after the other: whether they end.
+    #[derive(Clone)]
+    struct Script(Arc<Mutex<VecDeque<Result<(), Ended>>>>);
+
+    impl Start for Script {
+        fn start(&self) -> Result<Box<dyn Process>, String> {
+            Ok(Box::new(self.clone()))
+        }
+    }
+
+    impl Process for Script {
+        fn send(&mut self, _: &Request) -> Result<(), Ended> {
+            Ok(())
+        }
+
+        fn answer(&mut self, _: Option<&AtomicBool>, _: Option<f64>) -> Result<Answer, Ended> {
+            let next = locked(&self.0).pop_front();
+            next.unwrap_or(Err(Ended::Cancelled)).map(|()| Answer {
+                time: Vec::new(),
+                columns: Vec::new(),
+                result: Ok(Statistics::default()),
+                messages: Vec::new(),
+            })
+        }
+    }
+
+    /// The classes of the failures, `None` of what did not fail, and the last message.
+    fn failures(ends: &[(usize, Result<(), Ended>)]) -> (Vec<Option<FailureClass>>, String) {
+        let all = ends.iter().flat_map(|(count, end)| std::iter::repeat_n(end.clone(), *count));
+        let pool = Pool::new(Box::new(Script(Arc::new(Mutex::new(all.clone().collect())))));
+        let plan = pool.plan(Plan {
+            kind: InterfaceKind::CoSimulation,
+            numbers: Vec::new(),
+            strings: Vec::new(),
+            varied: Vec::new(),
+            inputs: Vec::new(),
+            observed: Vec::new(),
+            differentiates: false,
+        });
+        let mut last = String::new();
+        let classes = all.map(|_| {
+            let mut out = Trajectory::default();
+            let failure = pool.simulate((&plan, &[]), &Settings::default(), &mut out).err()?;
+            last = failure.message;
+            Some(failure.class)
+        });
+        (classes.collect(), last)
+    }
+
+    #[test]
+    fn simulations_that_do_not_end_are_counted_in_a_row() {
+        let slow = || Err(Ended::TooSlow);
+        let hung = || Err(Ended::Hung("a call has not returned".to_owned()));
+        let is_hopeless = |class: &Option<FailureClass>| *class == Some(FailureClass::Hopeless);
+        // The unit has not simulated anything yet.
+        let (classes, last) = failures(&[(2, hung()), (4, slow())]);
+        assert_eq!(
+            classes.iter().map(is_hopeless).collect::<Vec<_>>(),
+            [false, false, false, false, true, true]
+        );
+        assert!(last.starts_with("a call has not returned; after 5 simulations"), "{last}");
+        // It has, and does again.
+        let (classes, _) = failures(&[(1, Ok(())), (19, slow()), (1, Ok(())), (19, slow())]);
+        assert!(!classes.iter().any(is_hopeless));
+        let (classes, last) = failures(&[(1, Ok(())), (20, slow()), (1, Ok(()))]);
+        assert_eq!(classes.iter().position(is_hopeless), Some(20));
+        assert_eq!(classes.last(), Some(&None));
+        assert_eq!(last, "it takes more time than allowed; 20 simulations in a row ended so");
+        // A crash is not a hang.
+        let (classes, _) = failures(&[(30, Err(Ended::Itself("signal 11".to_owned())))]);
+        assert!(!classes.iter().any(is_hopeless));
     }
 }

@@ -507,7 +507,10 @@ impl Stage {
         run.map(|_| ()).map_err(|error| {
             let length = (settings.stop - settings.start).max(f64::MIN_POSITIVE);
             let failed = Failed {
-                kind: kind(&error),
+                kind: match self.instance.is_hopeless() {
+                    true => FailureKind::Hopeless,
+                    false => kind(&error),
+                },
                 cause: self.instance.explain(&error),
                 progress: (error.time - settings.start) / length,
                 at: Some(error.time),

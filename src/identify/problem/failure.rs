@@ -14,12 +14,19 @@ pub enum FailureKind {
     Budget,
     /// It ended, but points are missing or not finite.
     Points,
+    /// It did not end, as so many before it that the search ends.
+    Hopeless,
 }
 
 impl FailureKind {
     /// All kinds, in the order of their numbers in the journal.
-    pub const ALL: [FailureKind; 4] =
-        [FailureKind::Model, FailureKind::Solver, FailureKind::Budget, FailureKind::Points];
+    pub const ALL: [FailureKind; 5] = [
+        FailureKind::Model,
+        FailureKind::Solver,
+        FailureKind::Budget,
+        FailureKind::Points,
+        FailureKind::Hopeless,
+    ];
 
     /// Its name in reports.
     pub fn name(self) -> &'static str {
@@ -28,6 +35,7 @@ impl FailureKind {
             FailureKind::Solver => "solver",
             FailureKind::Budget => "budget",
             FailureKind::Points => "points",
+            FailureKind::Hopeless => "no end",
         }
     }
 }

@@ -59,6 +59,8 @@ pub struct Run {
     pub examples: IndexMap<String, Vec<f64>>,
     /// The first failure, as long as all others are like it.
     alike: Option<Failed>,
+    /// Why no further simulation is worth its time.
+    hopeless: Option<String>,
     /// The non-dominated individuals, where there are several objectives: values and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     last_gain: u64,
@@ -118,6 +120,7 @@ impl Run {
             failed: [0; FailureKind::ALL.len()],
             examples: IndexMap::new(),
             alike: None,
+            hopeless: None,
             front: Vec::new(),
             last_gain: 0,
             reference: f64::INFINITY,
@@ -163,6 +166,9 @@ impl Run {
 
     /// The stop condition that holds, in words.
     fn condition(&self) -> Option<String> {
+        if let Some(cause) = &self.hopeless {
+            return Some(format!("the simulations do not end: {cause}"));
+        }
         if self.is_hopeless() {
             return Some("no individual could be simulated".to_owned());
         }
@@ -424,6 +430,9 @@ impl Run {
             known => known.filter(is_alike),
         };
         self.failed[kind] += 1;
+        if failed.kind == FailureKind::Hopeless {
+            self.hopeless.get_or_insert_with(|| failed.cause.clone());
+        }
         let cause = self.observed.failed(&failed.cause);
         if row < self.batch.len() && !self.examples.contains_key(cause) {
             let values = self.problem.values(self.batch.row(row));

@@ -55,6 +55,41 @@ fn searched(left: &Arc<AtomicI64>, flag: &Arc<AtomicBool>) -> Run {
     run
 }
 
+/// Simulates so many times; then calls do not return.
+struct Hanging {
+    own: Box<dyn Simulate>,
+    left: Arc<AtomicI64>,
+}
+
+impl Simulate for Hanging {
+    fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
+        match self.left.fetch_sub(1, Ordering::Relaxed) {
+            1.. => self.own.simulate(parameters, out),
+            _ => Err(Failed::new(FailureKind::Hopeless, "20 in a row ended so", 0.0)),
+        }
+    }
+}
+
+/// The search ends, and keeps what it has found.
+#[test]
+fn a_search_ends_where_simulations_do_not_end() {
+    let mut own = problem("genetic", decay, &[2.0, 0.7], &NOISE);
+    let make = own.simulator;
+    let left = Arc::new(AtomicI64::new(60));
+    own.simulator =
+        Box::new(move || Ok(Box::new(Hanging { own: make()?, left: Arc::clone(&left) })));
+    let mut run = Run::new(own, 1).unwrap();
+    let reason = loop {
+        match run.stop() {
+            Some(reason) => break reason,
+            None => run.step(0.0),
+        };
+    };
+    assert_eq!(reason, "the simulations do not end: 20 in a row ended so");
+    assert!(run.observed.best.as_ref().is_some_and(|best| best.fitness.is_finite()));
+    assert!(run.evaluations() < 1000, "{}", run.evaluations());
+}
+
 /// The statistics in the order in which a run makes them.
 fn statistics(run: &mut Run) -> Result<Solution, Fault> {
     conclude(run);

@@ -390,7 +390,7 @@ fn why(session: &Session, unit: &Imported, failure: SimulationFailure) -> Fault 
     }
     let at = match class {
         // Where it was then is not known.
-        FailureClass::Process | FailureClass::Instance => String::new(),
+        FailureClass::Process | FailureClass::Hopeless | FailureClass::Instance => String::new(),
         _ => format!(" at {time} s"),
     };
     let fault = fault!(BAD_FMU, "the simulation of `{}` failed{at}: {message}", unit.file);
