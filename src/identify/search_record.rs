@@ -27,7 +27,7 @@ pub struct SearchRecord {
     pub history: History,
     /// The best individual so far.
     pub best: Option<Best>,
-    /// The values of the best individual after each generation.
+    /// The values of the best individual of each generation; empty where all of it failed.
     pub trace: Vec<Vec<f64>>,
     /// Individuals of all generations.
     pub individuals: u64,
@@ -72,12 +72,12 @@ impl SearchRecord {
     ) -> bool {
         self.history.record(fitness);
         let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
-        let better = order(fitness).first().copied();
-        let better = better.filter(|&k| fitness[k] < best && !has_failed(fitness[k]) && counts(k));
+        let leading = order(fitness).first().copied().filter(|&k| !has_failed(fitness[k]));
+        let better = leading.filter(|&k| fitness[k] < best && counts(k));
         if let Some(k) = better {
             self.best = Some(Best { values: values(k), fitness: fitness[k] });
         }
-        self.trace.push(self.best.as_ref().map_or_else(Vec::new, |best| best.values.clone()));
+        self.trace.push(leading.map_or_else(Vec::new, &values));
         for (k, &fitness) in fitness.iter().enumerate() {
             self.keep(|| values(k), fitness);
         }

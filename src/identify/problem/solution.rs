@@ -187,7 +187,7 @@ pub struct Provenance {
 pub struct Course {
     /// Every generation: best, mean, worst, failures.
     pub history: Vec<Generation>,
-    /// The best values after each generation.
+    /// The values of the best individual of each generation.
     pub trace: Vec<Vec<f64>>,
     /// Evenly chosen individuals.
     pub individuals: Vec<(Vec<f64>, f64)>,
@@ -201,6 +201,19 @@ impl Course {
             trace: observed.trace.clone(),
             individuals: observed.kept.clone(),
         }
+    }
+
+    /// The best values after each generation: without elitism those of a generation may be worse.
+    pub(crate) fn best_so_far(&self) -> Vec<Vec<f64>> {
+        let (mut least, mut best) = (f64::INFINITY, &Vec::new());
+        let mut all = Vec::with_capacity(self.trace.len());
+        for (generation, values) in self.history.iter().zip(&self.trace) {
+            if generation.best < least && !values.is_empty() {
+                (least, best) = (generation.best, values);
+            }
+            all.push(best.clone());
+        }
+        all
     }
 }
 

@@ -214,7 +214,7 @@ impl Solution {
         text.unwrap_or_else(|error| unreachable!("strings, numbers and lists only: {error}")) + "\n"
     }
 
-    /// `history.csv`: one line for each generation, with the best values so far.
+    /// `history.csv`: one line for each generation, with the values of its best individual.
     pub fn history_csv(&self) -> String {
         let mut text = String::from("generation,best,mean,worst,failures");
         self.parameters

@@ -12,13 +12,14 @@ pub fn section(view: &View) -> Option<Section> {
     if solution.course.trace.len() < 2 {
         return None;
     }
+    let trace = solution.course.best_so_far();
     let content = html! {
         details {
             summary { "The best values so far, generation by generation" }
-            (legend(&drawing(&solution.parameters[0], 0, &solution.course.trace)))
+            (legend(&drawing(&solution.parameters[0], 0, &trace)))
             div.figures.small {
                 @for (k, parameter) in solution.parameters.iter().enumerate() {
-                    (one(parameter, k, &solution.course.trace))
+                    (one(parameter, k, &trace))
                 }
             }
         }
