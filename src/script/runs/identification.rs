@@ -92,8 +92,17 @@ impl Session {
                 help: "give the names of two matrices of the same experiment"
             );
         }
+        let count = x.len();
         let pairs = x.into_iter().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite());
         let (x, y): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        if x.is_empty() && count > 0 {
+            bail!(
+                BAD_DATA,
+                "of the {count} rows of `{}` and `{}` in `{file}`, none has two finite numbers",
+                names[0], names[1];
+                help: "check the names of the matrices, and the file for missing values"
+            );
+        }
         if x.is_empty() {
             bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
         }
