@@ -32,6 +32,9 @@ const BUDGET: u64 = 200;
 const BETTER: f64 = 1e-6;
 /// Ranges that the script does not name are widened so often at most, by this factor each time.
 const WIDER: usize = 8;
+/// So often at most for intervals that they end: what the data determine to an order of magnitude lies
+/// within four orders of the individuals.
+const WIDER_FOR_INTERVALS: usize = 4;
 const WIDENING: f64 = 10.0;
 /// A positive range that is wider than this ratio is widened beyond zero.
 const DECADES: f64 = 1e4;
@@ -81,8 +84,8 @@ impl Ending<'_> {
     }
 
     /// Least squares from the best individual. Where the script names no ranges, those that its
-    /// individuals span bound nothing: they are widened until the minimum does not lie at their
-    /// ends, and it is none where that does not help.
+    /// individuals span bound nothing: they are widened until neither the minimum lies at their ends
+    /// nor an interval ends there, and where that does not help the minimum, there is none.
     fn reached(&self, best: ScriptBest<'_>) -> Result<Solution, String> {
         let named = self.recorder.ranges.is_some();
         let mut ranges = self.ranges(best);
@@ -93,16 +96,19 @@ impl Ending<'_> {
                 widen(range, *value, *limits);
             }
         }
-        for _ in 0..WIDER {
+        for round in 0..WIDER {
             let problem = self.problem(best, &ranges)?;
             let mut solution = self.probed(best, problem)?;
             simulations += solution.script.as_ref().map_or(0, |script| script.probe_simulations);
-            let ends = solution.parameters.iter().zip(&mut ranges).zip(&limits);
-            let widened = ends.filter_map(|((parameter, range), limits)| {
-                (!named && parameter.at_bound && widen(range, parameter.value, *limits))
-                    .then_some(())
-            });
-            if widened.count() == 0 {
+            let for_intervals = round < WIDER_FOR_INTERVALS;
+            let mut widened = false;
+            for (k, (range, limits)) in ranges.iter_mut().zip(&limits).enumerate() {
+                let value = solution.parameters[k].value;
+                for side in ended_sides(&solution.parameters, k, for_intervals) {
+                    widened |= !named && widen_side(range, side, value, *limits);
+                }
+            }
+            if !widened {
                 if let Some(script) = &mut solution.script {
                     script.probe_simulations = simulations;
                 }
@@ -263,9 +269,12 @@ impl Ending<'_> {
         let at_minimum = solution.outcome.ending.kind == EndingKind::Minimum;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.observed.history.generations.len();
-        let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
+        let evolves = generations > 1 && self.recorder.evolves;
+        let who = if evolves { "The genetic algorithm" } else { "The script" };
         draw_curves(&experiments, &mut solution, &[], None);
-        let probe = sentence((who, best, before), &solution, at_minimum);
+        let last = self.recorder.observed.history.generations.last().map(|last| last.best);
+        let last = last.filter(|last| evolves && *last > best.fitness);
+        let probe = sentence((who, best, before), last, &solution, at_minimum);
         solution.effort.simulations_for_statistics += run.simulations;
         solution.script = Some(ScriptResult {
             probed: true,
@@ -349,7 +358,7 @@ impl Ending<'_> {
         if recorder.ranges.is_none() {
             findings.push(search(
                 "The ranges in the table are those of the script's individuals, extended where \
-                 the minimum lies outside.",
+                 the minimum or an interval lies outside.",
             ));
         }
         let method = if script.probed { "script, then least squares" } else { "script" };
@@ -387,14 +396,41 @@ impl Ending<'_> {
     }
 }
 
+/// The sides on which the range of a parameter ends what is said of the parameters: 0 below, 1 above.
+fn ended_sides(
+    all: &[SolvedParameter],
+    k: usize,
+    for_intervals: bool,
+) -> impl Iterator<Item = usize> {
+    let own = &all[k];
+    let [low, high] = own.range;
+    let stands = [own.value - low <= high - own.value, own.value - low > high - own.value];
+    let ends_another = |side: usize| {
+        let held = all.iter().flat_map(|other| other.held.iter().flatten());
+        let mut held = held.filter(|held| held.parameter == own.name);
+        held.any(|held| (held.end - low > high - held.end) == (side == 1))
+    };
+    let ends = |side: usize| {
+        own.at_bound && stands[side] || for_intervals && (own.open[side] || ends_another(side))
+    };
+    [ends(0), ends(1)].into_iter().enumerate().filter(|(_, ends)| *ends).map(|(side, _)| side)
+}
+
 /// Widens a range at the end that a value stands at, as far as the model allows; whether it could.
-fn widen([low, high]: &mut [f64; 2], value: f64, limits: [f64; 2]) -> bool {
+fn widen(range: &mut [f64; 2], value: f64, limits: [f64; 2]) -> bool {
+    let [low, high] = *range;
+    let side = if high - value > value - low { 0 } else { 1 };
+    widen_side(range, side, value, limits)
+}
+
+/// Widens a range below (0) or above (1), as far as the model allows; whether it could.
+fn widen_side([low, high]: &mut [f64; 2], side: usize, value: f64, limits: [f64; 2]) -> bool {
     let before = [*low, *high];
     let width = match *high - *low {
         0.0 => value.abs().max(f64::MIN_POSITIVE.sqrt()),
         width => width,
     };
-    if *high - value > value - *low {
+    if side == 0 {
         // Of a positive parameter the ratio counts, as long as it has not lost its meaning.
         let wider = match *low > *high / DECADES {
             true if *low > 0.0 => *low / WIDENING,
@@ -480,9 +516,11 @@ fn experiment(compared: &Compared, model: &Arc<dyn Model>, name: String) -> Expe
     }
 }
 
-/// What least squares have made of the script's best individual.
+/// What least squares have made of the script's best individual; `last`: the best of the last
+/// generation, where that is worse.
 fn sentence(
     (who, best, before): (&str, ScriptBest<'_>, f64),
+    last: Option<f64>,
     solution: &Solution,
     at_minimum: bool,
 ) -> String {
@@ -499,6 +537,12 @@ fn sentence(
     let values =
         solution.parameters.iter().map(|p| format!("{} = {}", p.name, significant(p.value, 5)));
     let values = values.collect::<Vec<String>>().join(", ");
+    let (search, from) = match last {
+        Some(last) => {
+            (format!("{who} found {own} and ended at {}", significant(last, 5)), "from its best")
+        }
+        None => (format!("{who} ended at {own}"), "from there"),
+    };
     let reached = if before - after > BETTER * before {
         let ratio = before / after;
         let much = match ratio {
@@ -506,11 +550,9 @@ fn sentence(
             ratio => format!("{} % better", significant(100.0 * (ratio - 1.0), 2)),
         };
         let after = significant(after, 5);
-        format!(
-            "{who} ended at {own}; least squares from there reaches {after} ({much}) at {values}."
-        )
+        format!("{search}; least squares {from} reaches {after} ({much}) at {values}.")
     } else {
-        format!("{who} ended at {own}; least squares from there finds no improvement.")
+        format!("{search}; least squares {from} finds no improvement.")
     };
     match at_minimum {
         true => format!(

@@ -68,6 +68,8 @@ pub struct Recorder {
     /// Individuals of the generation that ended last.
     generation_size: usize,
     sorted_by_fit_order: bool,
+    /// Whether the script makes the parameters that it simulates of other genes.
+    transforms: bool,
     pending: Generation,
     /// Generations that ended without `Fit_Order`, each with what was best before it.
     provisional: Vec<(Generation, Known)>,
@@ -107,9 +109,10 @@ impl Recorder {
         before
     }
 
-    /// `Mutation` was called with these search ranges.
+    /// `Mutation` or `Refine` was called with these search ranges, which are those of the parameters
+    /// unless the script makes parameters of other genes.
     pub fn searched(&mut self, minima: &[f64], maxima: &[f64]) {
-        self.ranges = Some((minima.to_vec(), maxima.to_vec()));
+        self.ranges = (!self.transforms).then(|| (minima.to_vec(), maxima.to_vec()));
     }
 
     /// `Eval` has simulated `genomes`; returns the number of the first, from which the others count.
@@ -174,6 +177,11 @@ impl Recorder {
     /// `Fit_Order` got a population with its fitness: a generation ends.
     pub fn ordered(&mut self, population: &Genomes, fitness: &[f64]) {
         self.evolves = true;
+        self.refined(population, fitness);
+    }
+
+    /// All individuals of a search have this fitness, such as those of `Refine`: a generation ends.
+    pub fn refined(&mut self, population: &Genomes, fitness: &[f64]) {
         if !std::mem::replace(&mut self.sorted_by_fit_order, true) {
             self.take_back(population);
         }
@@ -181,7 +189,27 @@ impl Recorder {
             return;
         }
         let individuals: Vec<Vec<f64>> = population.rows().map(<[f64]>::to_vec).collect();
+        let individuals = match self.simulated_instead(&individuals, fitness) {
+            Some(simulated) => {
+                // The ranges so far were those of the genes.
+                (self.transforms, self.ranges) = (true, None);
+                simulated
+            }
+            None => individuals,
+        };
         self.end_generation(&individuals, fitness, true);
+    }
+
+    /// What was simulated in place of these genes, which were not all simulated: a script that makes parameters of
+    /// them, such as 10^g, simulates as many individuals, whose sums of squares are the fitness.
+    fn simulated_instead(&self, genes: &[Vec<f64>], fitness: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let simulated = self.pending.genomes();
+        if simulated.len() != genes.len() || genes.iter().all(|own| simulated.contains(own)) {
+            return None;
+        }
+        let experiments = self.pending.covering(simulated);
+        let sums = self.pending.sums(&experiments, simulated, &self.measurements);
+        (recognized(&sums, fitness) != Objective::Script).then(|| simulated.to_vec())
     }
 
     /// The run has ended or was interrupted: ends the generation that is complete.
@@ -364,6 +392,39 @@ mod tests {
         assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (1.0, 1.0, 1.0));
         assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0]));
         assert_eq!(best.compared[0].measured, Some(vec![0.0]));
+    }
+
+    /// Genes are logarithms: what counts is what was simulated, and the ranges of the genes are none
+    /// of the parameters.
+    #[test]
+    fn parameters_made_of_genes_are_those_that_were_simulated() {
+        let mut recorder = Recorder::default();
+        for generation in 0..2 {
+            let first = recorder.evaluated(
+                &study(),
+                &[0.0],
+                &genomes(&[1.0, 10.0, 100.0]),
+                &simulated(&[1.0, 10.0, f64::NAN]),
+            );
+            recorder.rated(first..first + 3, &[0.0]);
+            recorder.ordered(&genomes(&[0.0, 1.0, 2.0]), &[1.0, 100.0, 1e60]);
+            recorder.searched(&[-3.0], &[3.0]);
+            assert_eq!(recorder.observed.history.generations.len(), generation + 1);
+        }
+        let best = recorder.best().unwrap();
+        assert_eq!((best.genome[0], best.fitness), (1.0, 1.0));
+        assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0]));
+        assert_eq!((&recorder.ranges, &recorder.spanned), (&None, &Some((vec![1.0], vec![100.0]))));
+    }
+
+    #[test]
+    fn genes_that_explain_no_fitness_are_not_exchanged() {
+        let mut recorder = Recorder::default();
+        let first =
+            recorder.evaluated(&study(), &[0.0], &genomes(&[1.0, 10.0]), &simulated(&[1.0, 10.0]));
+        recorder.rated(first..first + 2, &[0.0]);
+        recorder.ordered(&genomes(&[0.0, 1.0]), &[5.0, 7.0]);
+        assert!(recorder.best().is_none());
     }
 
     #[test]

@@ -59,7 +59,9 @@ impl Session {
         let count = done.fitness.len() as u64;
         let recorder = &mut self.identification().recorder;
         recorder.rated(done.numbers, &refinement.measured);
-        recorder.ordered(&done.genomes, &done.fitness);
+        let ends = |end: fn(&Free) -> f64| refinement.ranges.iter().map(end).collect::<Vec<f64>>();
+        recorder.searched(&ends(|free| free.min), &ends(|free| free.max));
+        recorder.refined(&done.genomes, &done.fitness);
         match best(&done.genomes, &done.fitness).filter(|found| !has_failed(found.fitness)) {
             Some(found) => Ok((found, count)),
             None => Err(fault!(BAD_POPULATION, "no individual can be simulated").into()),

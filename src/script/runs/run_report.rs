@@ -3,10 +3,11 @@
 
 use super::identification::{Identification, Prepared};
 use crate::diag::{Diagnostic, Fault};
+use crate::ga::errors::BAD_POPULATION;
 use crate::identify::problem::{
     Finding, FindingKind, NOISE_OF_FORMULAS, ScriptError, Severity, Solution,
 };
-use crate::identify::{Ending, Measurement};
+use crate::identify::{Ending, Measurement, Recorder};
 use crate::models::data_notes::DataNotes;
 use crate::source::Span;
 use crate::{Reporting, Session};
@@ -74,8 +75,11 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
         session.world.end_view();
         return Ok(());
     }
+    let Some(best) = recorder.best() else {
+        note_unknown_best(session, &recorder);
+        return Ok(());
+    };
     let identification = session.extension::<Identification>();
-    let Some(best) = recorder.best() else { return Ok(()) };
     let mut noise = NOISE_OF_FORMULAS;
     let mut models = Vec::new();
     for compared in best.compared {
@@ -114,6 +118,19 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     let [shown, whole] = [solution.text_after(&said), solution.text()].map(timed);
     session.print_report(&shown, &whole, &solution.brief());
     write_files(session, &solution, seconds)
+}
+
+/// Says why a run that has simulated generations has no report: its best individual is not known.
+fn note_unknown_best(session: &mut Session, recorder: &Recorder) {
+    let simulated = recorder.evaluations - recorder.observed.failures;
+    if recorder.evolves && simulated > 0 && !session.is_interrupted() {
+        let text = format!(
+            "there is no report of {simulated} simulations: the individuals that were sorted are not \
+             those that `Eval` has simulated, and their fitness is not the sum of squares of these; \
+             sort what is simulated, in its order"
+        );
+        session.note(BAD_POPULATION, text);
+    }
 }
 
 fn about_data(sentence: String) -> Finding {

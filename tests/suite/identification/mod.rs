@@ -19,6 +19,7 @@ mod relative_data;
 mod report_page;
 mod resume;
 mod scale;
+mod script_reports;
 mod searches;
 mod shards;
 mod spectra;
