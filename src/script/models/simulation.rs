@@ -171,7 +171,7 @@ pub(crate) fn look_at(session: &mut Session, model: &Arc<Translated>) {
     }
 }
 
-/// Another model takes the place of the current one, or the model as it is translated anew.
+/// Another model takes the place of the current one, or the model is translated again.
 fn leave(session: &mut Session, before: &Current) {
     session.models.leave(before);
     if !before.imported.is_empty() {
