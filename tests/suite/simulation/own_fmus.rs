@@ -33,7 +33,8 @@ const DECAY: &str = "package P model Decay parameter Real k(unit = \"1/s\") = 1;
 #[test]
 fn a_unit_is_not_written_with_the_library_of_another_version() {
     let here = folder(&[("P.mo", DECAY), ("old.so", "of another version")]);
-    let mut child = command(here.path(), &["export-fmu", "P.mo", "-o", "unit.fmu"]);
+    let mut child =
+        command(here.path(), &["export-fmu", "P.mo", "--model", "P.Decay", "-o", "unit.fmu"]);
     let output = child.env("GAPILIB_FMU_RUNTIME", here.path().join("old.so")).output();
     let output = output.expect("it ends");
     let errors = String::from_utf8(output.stderr).expect("text");
