@@ -30,6 +30,9 @@ codes! {
     /// Sizes of measured X and Y differ.
     DATA_SIZES_DIFFER = "data-sizes-differ":
         "## What it means\n\nThe matrices of X and Y values have different numbers of elements, so they do not form pairs of one experiment.\n\n## Example\n\n`Exp_Adq_SISO(\"data.mat\", \"t\", \"V\")` where `t` has 100 elements and `V` has 99.\n\n## What to do\n\nCorrect the file or the names of the matrices.",
+    /// More searches of a script than are reported (a note).
+    SEVERAL_SEARCHES = "several-searches":
+        "## What it means\n\nWhat a generation compares, the model and the measured points, says which search it belongs to; each search has a report of its own, because fitness values of different data cannot be compared. This script has more searches than are reported.\n\n## Example\n\nA loop that fits a model to each of 1000 simulated data sets, or measured points that change in each generation.\n\n## What to do\n\nNothing, if the script prints what it finds. A report of each search is written where each has a script of its own, or reads its data by `Exp_Adq_SISO`.",
     /// Ranks of one job that do not fit each other.
     RANKS_DIFFER = "ranks-differ":
         "## What it means\n\nThe processes of an MPI job run different versions of the program, or one of them cannot make the simulator that rank 0 has sent. The message names the rank and its machine.\n\n## Example\n\nAn older `gapi` in the search path of one machine.\n\n## What to do\n\nStart the same program file on all machines, for example by its full path on a shared file system.",

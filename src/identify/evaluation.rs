@@ -118,6 +118,7 @@ impl Evaluator {
             descriptions,
             x,
             y,
+            changes: 0,
         };
         Ok(Evaluator {
             study: Arc::new(study),
@@ -147,6 +148,12 @@ impl Evaluator {
                 s.max_steps
             )
         )
+    }
+
+    /// The same for a model that was found changed so often.
+    pub fn of_changed_model(mut self, changes: u32) -> Evaluator {
+        Arc::make_mut(&mut self.study).changes = changes;
+        self
     }
 
     /// What is simulated.

@@ -6,16 +6,51 @@
 
 use super::Simulated;
 use super::fitness::sum_of_squares;
+use super::search_record::Failures;
 use super::study::{Compared, Measurement, Study};
 use crate::ga::Genomes;
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::Hasher as _;
 use std::sync::Arc;
 
+/// Individuals that were left over by generations that have ended, and may be of the next one of
+/// another search. Those of ten models with populations of 1000 are as many.
+const LEFT_OVER: usize = 10_000;
+
 /// Simulations of one generation.
 #[derive(Debug, Clone, Default)]
 pub struct Generation {
     experiments: Vec<Simulations>,
+    /// Those that belong to no generation any more.
+    loose: Tally,
+}
+
+/// How many simulations there were, and which of them failed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Tally {
+    /// Their number.
+    pub simulations: u64,
+    /// Those that failed.
+    pub failures: Failures,
+}
+
+impl Tally {
+    /// Counts those of another part as well.
+    pub(crate) fn add(&mut self, others: &Tally) {
+        self.simulations += others.simulations;
+        self.failures.add(&others.failures);
+    }
+}
+
+/// What a search compares: a model with its variables, and the measured points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// What is simulated.
+    pub study: Arc<Study>,
+    /// The measured X.
+    pub x: Vec<f64>,
+    /// The measured Y; `None` where the script has not shown it.
+    pub measured: Option<Vec<f64>>,
 }
 
 /// Simulations of one model at the same points.
@@ -29,6 +64,9 @@ struct Simulations {
     numbers: Vec<u64>,
     /// The measured values that `Fit` compared with, and which individuals it got.
     ratings: Vec<(Vec<f64>, Vec<bool>)>,
+    tally: Tally,
+    /// Whether a generation has ended since without them.
+    left_over: bool,
 }
 
 /// A series that individuals are compared with.
@@ -43,8 +81,79 @@ impl Generation {
         self.experiments.is_empty()
     }
 
+    /// Forgets all individuals.
     pub fn clear(&mut self) {
-        self.experiments.clear();
+        let own = std::mem::take(&mut self.experiments);
+        own.iter().for_each(|one| self.loose.add(&one.tally));
+    }
+
+    /// All that was simulated here.
+    pub fn tally(&self) -> Tally {
+        let mut all = self.loose.clone();
+        self.experiments.iter().for_each(|own| all.add(&own.tally));
+        all
+    }
+
+    /// The generation that these experiments make, taken out of this one, with what belongs to none.
+    pub fn take(&mut self, experiments: &[usize]) -> Generation {
+        let mut own =
+            Generation { loose: std::mem::take(&mut self.loose), ..Generation::default() };
+        let mut place = 0;
+        own.experiments.extend(self.experiments.extract_if(.., |_| {
+            place += 1;
+            experiments.contains(&(place - 1))
+        }));
+        own
+    }
+
+    /// A generation of these individuals has ended. What was simulated of some of them was a check;
+    /// the rest may be of another search, until the same is simulated again.
+    pub fn leave(&mut self, individuals: &[Vec<f64>]) {
+        let count = individuals.len();
+        let mut known: Vec<u64> = individuals.iter().map(|genome| key(genome)).collect();
+        known.sort_unstable();
+        self.drop_where(|own| own.genomes.len() < count && own.are_among(&known));
+        self.experiments.iter_mut().for_each(|own| own.left_over = true);
+        while self.size() > LEFT_OVER {
+            let mut is_first = true;
+            self.drop_where(|_| std::mem::take(&mut is_first));
+        }
+    }
+
+    fn drop_where(&mut self, mut is_dropped: impl FnMut(&Simulations) -> bool) {
+        for own in self.experiments.extract_if(.., |own| is_dropped(own)) {
+            self.loose.add(&own.tally);
+        }
+    }
+
+    /// The experiments that were simulated since the last generation ended.
+    fn fresh(&self) -> impl Iterator<Item = &Simulations> {
+        self.experiments.iter().filter(|own| !own.left_over)
+    }
+
+    /// Groups of experiments whose sums of squares a script may add up: those with the same individuals,
+    /// unless they compare the same points with another model. An experiment that simulated some of the
+    /// individuals of an earlier group was a check of it and is in none.
+    pub fn groups(&self) -> Vec<Vec<usize>> {
+        let mut groups: Vec<(Vec<u64>, Vec<usize>)> = Vec::new();
+        for place in self.fresh_places() {
+            let own = &self.experiments[place];
+            let keys = own.sorted_keys();
+            let replaces = |known: &&usize| own.replaces(&self.experiments[**known]);
+            let is_another = groups.iter().flat_map(|(_, places)| places).any(|k| replaces(&k));
+            let same = groups
+                .iter()
+                .position(|(known, places)| *known == keys && !places.iter().any(|k| replaces(&k)));
+            let is_part = |(known, _): &(Vec<u64>, Vec<usize>)| {
+                keys.iter().all(|key| known.binary_search(key).is_ok())
+            };
+            match same {
+                Some(same) => groups[same].1.push(place),
+                None if !is_another && groups.iter().any(is_part) => (),
+                None => groups.push((keys, vec![place])),
+            }
+        }
+        groups.into_iter().map(|(_, places)| places).collect()
     }
 
     /// Number of individuals of all experiments.
@@ -60,15 +169,17 @@ impl Generation {
         simulated: &Simulated,
         first: u64,
     ) {
+        self.drop_where(|known| known.left_over && known.is_of(study, x));
         let known = self.experiments.iter().position(|known| known.is_of(study, x));
         let place = known.unwrap_or_else(|| {
-            let (study, x) = (study.clone(), x.to_vec());
-            let (genomes, rows) = (Vec::new(), Vec::new());
-            let (numbers, ratings) = (Vec::new(), Vec::new());
-            self.experiments.push(Simulations { study, x, genomes, rows, numbers, ratings });
+            self.experiments.push(Simulations::new(study.clone(), x.to_vec()));
             self.experiments.len() - 1
         });
         let own = &mut self.experiments[place];
+        own.tally.simulations += genomes.len() as u64;
+        for failure in simulated.failures.iter().flatten() {
+            own.tally.failures.note(&failure.cause);
+        }
         own.numbers.extend((first..).take(genomes.len()));
         own.genomes.extend(genomes.rows().map(<[f64]>::to_vec));
         own.rows.extend(simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec));
@@ -78,6 +189,7 @@ impl Generation {
 
     /// Adds the simulations of another one.
     pub fn append(&mut self, other: Generation) {
+        self.loose.add(&other.loose);
         for mut more in other.experiments {
             match self.experiments.iter_mut().find(|own| own.is_of(&more.study, &more.x)) {
                 Some(own) => own.append(&mut more),
@@ -106,38 +218,77 @@ impl Generation {
         }
     }
 
-    /// Whether there are individuals and `Fit` got all of them.
+    /// Whether individuals were simulated since the last generation ended, and `Fit` got all of them.
     pub fn is_rated(&self) -> bool {
-        !self.is_empty() && self.experiments.iter().all(Simulations::is_rated)
+        self.fresh().next().is_some() && self.fresh().all(Simulations::is_rated)
     }
 
     /// Whether `Fit` got any of them.
     pub(crate) fn has_ratings(&self) -> bool {
-        self.experiments.iter().any(|simulations| !simulations.ratings.is_empty())
+        self.fresh().any(|simulations| !simulations.ratings.is_empty())
     }
 
     /// Whether this experiment has been simulated, and all its individuals compared.
     pub(crate) fn has_rated(&self, study: &Study, x: &[f64]) -> bool {
-        self.experiments.iter().any(|own| own.is_of(study, x) && own.is_rated())
+        self.fresh().any(|own| own.is_of(study, x) && own.is_rated())
     }
 
-    /// The only experiment, where there is one alone.
-    pub fn only(&self) -> Option<(&Study, &[f64], usize)> {
-        match self.experiments.as_slice() {
-            [own] => Some((&own.study, &own.x, own.genomes.len())),
-            _ => None,
-        }
+    /// The only experiment that was simulated since the last generation ended, where there is one
+    /// alone, and how many individuals it has.
+    pub fn only(&self, measurements: &[Measurement]) -> Option<(Target, usize)> {
+        let [place] = self.fresh_places()[..] else { return None };
+        let target = self.targets(&[place], measurements).pop()?;
+        Some((target, self.experiments[place].genomes.len()))
     }
 
-    /// The individuals of the first experiment.
-    pub fn genomes(&self) -> &[Vec<f64>] {
-        self.experiments.first().map_or(&[], |first| &first.genomes)
+    /// Where the experiments are that were simulated since the last generation ended.
+    pub fn fresh_places(&self) -> Vec<usize> {
+        let places = self.experiments.iter().enumerate();
+        places.filter(|(_, own)| !own.left_over).map(|(place, _)| place).collect()
+    }
+
+    /// What each series of these experiments compares.
+    pub fn targets(&self, experiments: &[usize], measurements: &[Measurement]) -> Vec<Target> {
+        let one = |series: Series<'_>| Target {
+            study: series.simulations.study.clone(),
+            x: series.simulations.x.clone(),
+            measured: series.measured.map(<[f64]>::to_vec),
+        };
+        self.series(experiments, measurements).into_iter().map(one).collect()
+    }
+
+    /// Of which experiment each series of these is.
+    pub fn experiments_of_series(&self, experiments: &[usize]) -> Vec<usize> {
+        let own = |&place: &usize| {
+            let count = self.experiments[place].ratings.len().max(1);
+            std::iter::repeat_n(place, count)
+        };
+        experiments.iter().flat_map(own).collect()
+    }
+
+    /// All experiments.
+    pub fn places(&self) -> Vec<usize> {
+        (0..self.experiments.len()).collect()
+    }
+
+    /// The individuals of an experiment.
+    pub fn genomes(&self, experiment: usize) -> &[Vec<f64>] {
+        self.experiments.get(experiment).map_or(&[], |own| &own.genomes)
+    }
+
+    /// The individuals of all experiments.
+    pub fn all_genomes(&self) -> impl Iterator<Item = &[f64]> {
+        self.experiments.iter().flat_map(|own| own.genomes.iter().map(Vec::as_slice))
+    }
+
+    /// Counts simulations that belong to no generation.
+    pub fn count(&mut self, tally: &Tally) {
+        self.loose.add(tally);
     }
 
     /// Whether all individuals are among those of `population`.
     pub fn is_part_of(&self, population: &[u64]) -> bool {
-        let known = |genome: &Vec<f64>| population.binary_search(&key(genome)).is_ok();
-        self.experiments.iter().all(|own| own.genomes.iter().all(known))
+        self.experiments.iter().all(|own| own.are_among(population))
     }
 
     /// The experiments that simulated the most of these individuals: one that simulated few of them
@@ -226,6 +377,40 @@ impl Generation {
 }
 
 impl Simulations {
+    fn new(study: Arc<Study>, x: Vec<f64>) -> Simulations {
+        Simulations {
+            study,
+            x,
+            genomes: Vec::new(),
+            rows: Vec::new(),
+            numbers: Vec::new(),
+            ratings: Vec::new(),
+            tally: Tally::default(),
+            left_over: false,
+        }
+    }
+
+    /// Whether all individuals have one of these keys, which are sorted.
+    fn are_among(&self, population: &[u64]) -> bool {
+        self.genomes.iter().all(|genome| population.binary_search(&key(genome)).is_ok())
+    }
+
+    fn sorted_keys(&self) -> Vec<u64> {
+        let mut keys: Vec<u64> = self.genomes.iter().map(|genome| key(genome)).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        keys
+    }
+
+    /// Whether it compares the same points with another model, or with a model that was changed.
+    fn replaces(&self, known: &Simulations) -> bool {
+        let [own, other] =
+            [self, known].map(|one| one.ratings.iter().map(|(measured, _)| measured));
+        let is_changed =
+            self.study.model == known.study.model && self.study.changes != known.study.changes;
+        is_changed || self.x == known.x && !self.ratings.is_empty() && own.eq(other)
+    }
+
     fn is_of(&self, study: &Study, x: &[f64]) -> bool {
         self.x == x && *self.study == *study
     }
@@ -247,6 +432,7 @@ impl Simulations {
 
     fn append(&mut self, more: &mut Simulations) {
         let first = self.genomes.len();
+        self.tally.add(&more.tally);
         self.genomes.append(&mut more.genomes);
         self.rows.append(&mut more.rows);
         self.numbers.append(&mut more.numbers);

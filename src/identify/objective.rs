@@ -39,6 +39,16 @@ impl Objective {
         if agrees { self } else { Objective::Script }
     }
 
+    /// That of these series, where the others do not count.
+    pub(super) fn of_series(self, series: &[usize]) -> Objective {
+        let own = |weights: Vec<f64>| series.iter().map(|&k| weights[k]).collect();
+        match self {
+            Objective::SumOfSquares(weights) => Objective::SumOfSquares(own(weights)),
+            Objective::Root(weights) => Objective::Root(own(weights)),
+            other => other,
+        }
+    }
+
     /// Its name in reports.
     pub fn name(&self) -> &'static str {
         match self {
@@ -97,6 +107,12 @@ fn weights(values: &[(&[f64], f64)], series: usize) -> Option<Vec<f64>> {
     let mut different: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
     different.sort_by(f64::total_cmp);
     different.dedup();
+    // One series alone: no two values agree with its sums by chance.
+    let only =
+        |own: usize| (0..series).map(|k| f64::from(u8::from(k == own))).collect::<Vec<f64>>();
+    if let Some(own) = (0..series).map(only).find(|own| different.len() > 1 && holds(own)) {
+        return Some(own);
+    }
     // With fewer values than this any weights would do.
     if different.len() < series + 2 || different[0] <= 0.0 {
         return None;
@@ -155,6 +171,8 @@ mod tests {
     fn few_individuals_do_not_make_weights() {
         let sums = [vec![1.0, 2.0], vec![2.0, 1.0]];
         assert_eq!(recognized(&sums, &[5.0, 7.0]), Objective::Script);
+        assert_eq!(recognized(&sums, &[2.0, 1.0]), Objective::SumOfSquares(vec![0.0, 1.0]));
+        assert_eq!(recognized(&sums[..1], &[2.0]), Objective::Script, "one value says nothing");
         assert_eq!(recognized(&[vec![1e60]], &[1e60]), Objective::Script, "all have failed");
     }
 }

@@ -14,7 +14,7 @@ use super::problem::{
     failure_region,
 };
 use super::ranks::Processors;
-use super::recorder::{Recorder, ScriptBest};
+use super::script_search::{ScriptBest, ScriptSearch};
 use super::study::Compared;
 use super::table::significant;
 use super::{Model, Objective, Parameter};
@@ -55,8 +55,10 @@ pub enum Probe {
 
 /// What is known of the experiments when a run ends.
 pub struct Ending<'a> {
-    /// What was observed.
-    pub recorder: &'a Recorder,
+    /// Which of the searches of the script it is, and how many there are.
+    pub number: [usize; 2],
+    /// What was observed of the search.
+    pub search: &'a ScriptSearch,
     /// The model of each series of the best individual, in their order; `None` where it is no
     /// longer at hand.
     pub models: Vec<Option<Arc<dyn Model>>>,
@@ -68,6 +70,8 @@ pub struct Ending<'a> {
     pub probe: Probe,
     /// Whether the user interrupted the run.
     pub interrupted: bool,
+    /// Whether this search had ended before the script was interrupted or failed.
+    pub is_over: bool,
     /// The first error of the script that it did not handle: where, and what.
     pub error: Option<ScriptError>,
 }
@@ -75,7 +79,7 @@ pub struct Ending<'a> {
 impl Ending<'_> {
     /// The solution; `None` when no individual was simulated successfully.
     pub fn solution(&self) -> Option<Solution> {
-        let best = self.recorder.best()?;
+        let best = self.search.best()?;
         let solution = match self.reached(best) {
             Ok(solution) => solution,
             Err(why) => self.unprobed(best, &why),
@@ -87,7 +91,7 @@ impl Ending<'_> {
     /// individuals span bound nothing: they are widened until neither the minimum lies at their ends
     /// nor an interval ends there, and where that does not help the minimum, there is none.
     fn reached(&self, best: ScriptBest<'_>) -> Result<Solution, String> {
-        let named = self.recorder.ranges.is_some();
+        let named = self.search.ranges.is_some();
         let mut ranges = self.ranges(best);
         let limits = self.limits(best);
         let mut simulations = 0;
@@ -175,7 +179,7 @@ impl Ending<'_> {
             method_name: method.name.to_owned(),
             method: (method.make)(&mut Options::default())?,
             polish: false,
-            seed: self.recorder.seed().unwrap_or(NO_SEED),
+            seed: self.search.seed.unwrap_or(NO_SEED),
             noise: self.noise,
             inference: Inference {
                 predict: Some(Box::new(ModelPredictions {
@@ -192,7 +196,11 @@ impl Ending<'_> {
     }
 
     fn title(&self, best: ScriptBest<'_>) -> String {
-        format!("Identified parameters of {}", models(best))
+        let number = match self.number {
+            [_, 1] => String::new(),
+            [number, all] => format!(", search {number} of {all}"),
+        };
+        format!("Identified parameters of {}{number}", models(best))
     }
 
     /// What the models describe the parameters, X and Y as.
@@ -242,7 +250,7 @@ impl Ending<'_> {
 
     /// The range of a parameter, wide enough for its value.
     fn range(&self, k: usize, value: f64) -> [f64; 2] {
-        let ranges = self.recorder.ranges.as_ref().or(self.recorder.spanned.as_ref());
+        let ranges = self.search.ranges.as_ref().or(self.search.spanned.as_ref());
         let known = ranges.and_then(|(low, high)| Some([*low.get(k)?, *high.get(k)?]));
         let [low, high] = known.unwrap_or([value, value]);
         [low.min(value), high.max(value)]
@@ -268,11 +276,11 @@ impl Ending<'_> {
         let solution = self.inferred(&mut run, &stop).map_err(|fault| fault.message)?;
         let at_minimum = solution.outcome.ending.kind == EndingKind::Minimum;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
-        let generations = self.recorder.observed.history.generations.len();
-        let evolves = generations > 1 && self.recorder.evolves;
+        let generations = self.search.observed.history.generations.len();
+        let evolves = generations > 1 && self.search.evolves;
         let who = if evolves { "The genetic algorithm" } else { "The script" };
         draw_curves(&experiments, &mut solution, &[], None);
-        let last = self.recorder.observed.history.generations.last().map(|last| last.best);
+        let last = self.search.observed.history.generations.last().map(|last| last.best);
         let last = last.filter(|last| evolves && *last > best.fitness);
         let probe = sentence((who, best, before), last, &solution, at_minimum);
         solution.effort.simulations_for_statistics += run.simulations;
@@ -341,21 +349,21 @@ impl Ending<'_> {
 
     /// Adds what the script's search was.
     fn with_search(&self, best: ScriptBest<'_>, mut solution: Solution) -> Solution {
-        let recorder = self.recorder;
+        let record = self.search;
         let names = best.compared[0].study.parameters.iter().map(|quantity| quantity.name.clone());
         let script = solution.script.get_or_insert_default();
         script.parameters = names.zip(best.genome.iter().copied()).collect();
         script.fitness = best.fitness;
         script.fitness_name = best.objective.name().to_owned();
-        script.interrupted = self.interrupted;
-        script.error.clone_from(&self.error);
-        script.changes.clone_from(&recorder.changes);
+        script.interrupted = self.interrupted && !self.is_over;
+        script.error = self.error.clone().filter(|_| !self.is_over);
+        script.changes.clone_from(&record.changes);
         if script.probed {
             solution.series.iter_mut().for_each(|own| own.script = simulated(best, own));
         }
         let mut findings: Vec<Finding> = script.error.iter().map(ScriptError::finding).collect();
         findings.push(search(script.probe.clone()));
-        if recorder.ranges.is_none() {
+        if record.ranges.is_none() {
             findings.push(search(
                 "The ranges in the table are those of the script's individuals, extended where \
                  the minimum or an interval lies outside.",
@@ -364,6 +372,9 @@ impl Ending<'_> {
         let method = if script.probed { "script, then least squares" } else { "script" };
         let stop = match &script.error {
             Some(error) => error.place(),
+            None if self.is_over && (self.interrupted || self.error.is_some()) => {
+                "the search has ended; the script was stopped during a later one".to_owned()
+            }
             None if self.interrupted => {
                 "interrupted: these are the best values found so far".to_owned()
             }
@@ -373,25 +384,23 @@ impl Ending<'_> {
         if !script.probed {
             solution.subject.fitness_name = best.objective.name().to_owned();
         }
-        let failed = [("simulation".to_owned(), recorder.observed.failures)];
+        let failed = [("simulation".to_owned(), record.observed.failures.count)];
         let free = self.parameters(best, &self.ranges(best));
         solution.findings = findings;
         solution.subject.method = method.to_owned();
         solution.outcome.stop = stop;
         solution.effort = Effort {
-            generations: recorder.observed.history.generations.len() as u64,
-            evaluations: recorder.evaluations,
-            simulations: recorder.evaluations,
+            generations: record.observed.history.generations.len() as u64,
+            evaluations: record.evaluations,
+            simulations: record.evaluations,
             failures: failed.into_iter().filter(|(_, count)| *count > 0).collect(),
-            causes: recorder.observed.causes.clone(),
-            failure_region: free
-                .ok()
-                .and_then(|free| failure_region(&free, &recorder.observed.kept)),
+            causes: record.observed.failures.causes.clone(),
+            failure_region: free.ok().and_then(|free| failure_region(&free, &record.observed.kept)),
             ..solution.effort
         };
         solution.pareto.objectives = vec![best.objective.name().to_owned()];
-        solution.provenance.seed = recorder.seed();
-        solution.course = Course::of(&recorder.observed);
+        solution.provenance.seed = record.seed;
+        solution.course = Course::of(&record.observed);
         solution
     }
 }

@@ -7,72 +7,55 @@
 //! individuals. So a script may evaluate its population in one call or one by one, with several
 //! experiments whose results it sums, with its own fitness function or its own sorting. When it has
 //! both of its own, the fitness is not known, and individuals are compared by the sum of squares.
+//!
+//! What a generation has compared, models and measured points, says which search it belongs to.
 
 use super::Simulated;
-use super::fitness::sum_of_squares;
-use super::generation::{self, Generation};
+use super::generation::{self, Generation, Tally, Target};
 use super::objective::{Objective, recognized};
-use super::search_record::{Best, SearchRecord};
+use super::script_search::{Before, Ended, ScriptSearch};
+use super::search_ranges::SearchRanges;
 use super::seeds::Seeds;
-use super::study::{Compared, Measurement, Study};
+use super::study::{Measurement, Study};
 use crate::ga::{Genomes, has_failed};
 use std::sync::Arc;
 
 /// Individuals of generations that may turn out to be parts of one: a population of 100 in the 36
 /// experiments of `scripts/humidity` has 3600.
 const PROVISIONAL: usize = 10_000;
-/// The best individual of the run.
-#[derive(Debug, Clone, Copy)]
-pub struct ScriptBest<'a> {
-    /// Its genes.
-    pub genome: &'a [f64],
-    /// Its fitness.
-    pub fitness: f64,
-    /// What the fitness is.
-    pub objective: &'a Objective,
-    /// Everything that it was compared with.
-    pub compared: &'a [Compared],
-}
 
-/// What the fitness of the best individual is, and everything that it was compared with.
-#[derive(Debug, Clone)]
-struct Comparison {
-    objective: Objective,
-    compared: Vec<Compared>,
-}
-
-/// The best individual with its comparison, where there is one.
-type Known = Option<(Best, Comparison)>;
+/// Searches that keep individuals for their figures; a script that repeats a search for thousands of
+/// samples would fill the memory with them.
+const IN_DETAIL: usize = 64;
 
 /// What was observed of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Recorder {
-    /// Its generations, its best individual, and its failures.
-    pub observed: SearchRecord,
-    comparison: Option<Comparison>,
-    /// The search ranges used last: minima and maxima.
-    pub ranges: Option<(Vec<f64>, Vec<f64>)>,
-    /// Smallest and largest gene of all individuals that were simulated.
-    pub spanned: Option<(Vec<f64>, Vec<f64>)>,
-    /// Number of simulations.
-    pub evaluations: u64,
-    /// What the user changed during the run, and from which generation on.
-    pub changes: Vec<(usize, String)>,
-    /// Whether operators of the genetic algorithm make one generation of the other; a script without
-    /// them evaluates individuals that it chooses in another way.
-    pub evolves: bool,
+    /// Its searches, in the order of their first generations.
+    searches: Vec<ScriptSearch>,
+    /// The search of the generation that ended last.
+    current: usize,
+    /// All simulations of the run.
+    tally: Tally,
+    /// Generations of all searches that have ended.
+    generations: u64,
+    /// Seconds, on the clock of the session, until the generation that ended last and until now.
+    seconds: [f64; 2],
+    /// What the user has changed for the generation that ends next.
+    changes: Vec<String>,
+    /// Whether operators were called since the last generation ended.
+    evolves: bool,
+    ranges: SearchRanges,
     measurements: Vec<Measurement>,
     seeds: Seeds,
+    /// The seeds before the first simulation of the generation that ends next.
+    seeds_before: Option<Seeds>,
     /// Individuals simulated in this run and those before it.
     numbered: u64,
-    /// Individuals of the generation that ended last.
-    generation_size: usize,
     sorted_by_fit_order: bool,
-    /// Whether the script makes the parameters that it simulates of other genes.
-    transforms: bool,
     pending: Generation,
-    /// Generations that ended without `Fit_Order`, each with what was best before it.
-    provisional: Vec<(Generation, Known)>,
+    /// Generations that ended without `Fit_Order`, each with its search as it was before.
+    provisional: Vec<(Generation, usize, Before)>,
 }
 
 impl Recorder {
@@ -92,27 +75,60 @@ impl Recorder {
     /// `Ram_Gen_ARENA` was called with `seed`, at the place `site` of a script, and gave `next` to
     /// go on with.
     pub fn seeded(&mut self, seed: [f64; 6], next: [f64; 6], site: u64) {
-        self.seeds.drawn(seed, next, site, self.evaluations > 0);
+        self.seeds.drawn(seed, next, site, self.tally.simulations > 0);
     }
 
-    /// The seed that the random numbers of the run began with.
-    pub fn seed(&self) -> Option<[f64; 6]> {
-        self.seeds.seed
+    /// It is so late, in seconds since the run began.
+    pub fn at(&mut self, seconds: f64) {
+        self.seconds[1] = seconds;
     }
 
-    /// Begins to record another run and returns the one before, finished.
-    pub fn begin_next(&mut self) -> Recorder {
+    /// Whether a generation has ended in this run.
+    pub fn has_generations(&self) -> bool {
+        self.generations > 0
+    }
+
+    /// All simulations of the run.
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// The search of the generation that ended last.
+    pub fn current(&self) -> Option<&ScriptSearch> {
+        self.searches.get(self.current)
+    }
+
+    /// The search that simulates this at these points; the last one of several.
+    pub fn search_simulating(&self, study: &Study, x: &[f64]) -> Option<&ScriptSearch> {
+        self.searches.iter().rev().find(|search| search.simulates(study, x))
+    }
+
+    /// What was simulated since the last generation ended.
+    pub fn pending_tally(&self) -> Tally {
+        self.pending.tally()
+    }
+
+    /// Begins to record another run and returns the searches of the one before, finished.
+    pub fn begin_next(&mut self) -> Vec<ScriptSearch> {
         let (seeds, numbered) = (self.seeds.of_next_run(), self.numbered);
         let next = Recorder { seeds, numbered, ..Recorder::default() };
-        let mut before = std::mem::replace(self, next);
-        before.finish();
-        before
+        std::mem::replace(self, next).finished()
     }
 
-    /// `Mutation` or `Refine` was called with these search ranges, which are those of the parameters
-    /// unless the script makes parameters of other genes.
-    pub fn searched(&mut self, minima: &[f64], maxima: &[f64]) {
-        self.ranges = (!self.transforms).then(|| (minima.to_vec(), maxima.to_vec()));
+    /// `Mutation`, `Refine` or another operator has made individuals with these search ranges, which
+    /// are those of the parameters unless the script makes parameters of other genes.
+    pub fn searched(&mut self, minima: &[f64], maxima: &[f64], made: &Genomes) {
+        self.ranges.given([minima, maxima], made, self.generations);
+    }
+
+    /// An operator of the genetic algorithm makes one generation of the other.
+    pub fn evolves(&mut self) {
+        self.evolves = true;
+    }
+
+    /// The user has changed something, from the next generation on.
+    pub fn changed(&mut self, what: &str) {
+        self.changes.push(what.to_owned());
     }
 
     /// `Eval` has simulated `genomes`; returns the number of the first, from which the others count.
@@ -127,18 +143,21 @@ impl Recorder {
             && self.pending.is_rated()
             && self.pending.has_rated(study, x);
         if ends {
-            self.end_pending_generation();
+            self.end_pending_generations();
         }
-        let generations = self.observed.history.generations.len();
-        if let Some(seed) = self.seeds.goes_on(generations) {
+        if self.seeds_before.is_none() {
+            self.seeds_before = Some(self.seeds.clone());
+        }
+        let own =
+            self.searches.last().map_or(0, |search| search.observed.history.generations.len());
+        if let Some(seed) = self.seeds.goes_on(own) {
             let entries = seed.map(|entry| entry.to_string()).join(", ");
-            self.changes.push((generations + 1, format!("seed := {{{entries}}}")));
+            self.changes.push(format!("seed := {{{entries}}}"));
         }
-        self.evaluations += genomes.len() as u64;
+        self.tally.simulations += genomes.len() as u64;
         for failure in simulated.failures.iter().flatten() {
-            self.observed.failed(&failure.cause);
+            self.tally.failures.note(&failure.cause);
         }
-        self.span(genomes);
         let first = self.numbered + 1;
         self.numbered += genomes.len() as u64;
         self.pending.add((study, x), genomes, simulated, first);
@@ -156,24 +175,6 @@ impl Recorder {
         self.pending.rate(numbers.into_iter(), measured);
     }
 
-    /// What is counted: generations, or evaluations where nothing evolves. Which of them it is shows
-    /// in the first generation only.
-    pub fn counted(&self) -> &'static str {
-        let is_known = self.observed.generations() > 0;
-        if is_known && !self.evolves { "evaluation" } else { "generation" }
-    }
-
-    /// The best individual so far.
-    pub fn best(&self) -> Option<ScriptBest<'_>> {
-        let (best, comparison) = (self.observed.best.as_ref()?, self.comparison.as_ref()?);
-        Some(ScriptBest {
-            genome: &best.values,
-            fitness: best.fitness,
-            objective: &comparison.objective,
-            compared: &comparison.compared,
-        })
-    }
-
     /// `Fit_Order` got a population with its fitness: a generation ends.
     pub fn ordered(&mut self, population: &Genomes, fitness: &[f64]) {
         self.evolves = true;
@@ -189,21 +190,22 @@ impl Recorder {
             return;
         }
         let individuals: Vec<Vec<f64>> = population.rows().map(<[f64]>::to_vec).collect();
-        let individuals = match self.simulated_instead(&individuals, fitness) {
-            Some(simulated) => {
-                // The ranges so far were those of the genes.
-                (self.transforms, self.ranges) = (true, None);
-                simulated
-            }
-            None => individuals,
-        };
-        self.end_generation(&individuals, fitness, true);
+        let simulated = self.simulated_instead(&individuals, fitness);
+        let transforms = simulated.is_some();
+        let individuals = simulated.unwrap_or(individuals);
+        let place = self.end_sorted(&individuals, fitness);
+        if transforms {
+            // The ranges so far were those of the genes.
+            let search = &mut self.searches[place];
+            (search.transforms, search.ranges) = (true, None);
+        }
     }
 
     /// What was simulated in place of these genes, which were not all simulated: a script that makes parameters of
     /// them, such as 10^g, simulates as many individuals, whose sums of squares are the fitness.
     fn simulated_instead(&self, genes: &[Vec<f64>], fitness: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let simulated = self.pending.genomes();
+        let fresh = self.pending.fresh_places();
+        let simulated = self.pending.genomes(*fresh.first()?);
         if simulated.len() != genes.len() || genes.iter().all(|own| simulated.contains(own)) {
             return None;
         }
@@ -212,43 +214,41 @@ impl Recorder {
         (recognized(&sums, fitness) != Objective::Script).then(|| simulated.to_vec())
     }
 
-    /// The run has ended or was interrupted: ends the generation that is complete.
-    pub fn finish(&mut self) {
-        let not_shown = self.observed.generations() == 0 && !self.pending.has_ratings();
+    /// The run has ended or was interrupted: ends the generation that is complete; its searches.
+    fn finished(mut self) -> Vec<ScriptSearch> {
+        let not_shown = self.generations == 0 && !self.pending.has_ratings();
         let complete = self.pending.is_rated() && !self.sorted_by_fit_order;
         let interrupted =
             self.pending.is_rated() && self.sorted_by_fit_order && self.is_next_generation();
         if !self.pending.is_empty() && (not_shown || complete || interrupted) {
-            self.end_pending_generation();
+            self.end_pending_generations();
         }
-        self.pending.clear();
+        let rest = self.pending.tally();
+        if self.searches.is_empty() && rest.simulations > 0 {
+            self.searches.push(ScriptSearch::default());
+        }
+        if let Some(search) = self.searches.get_mut(self.current) {
+            search.count(&rest);
+            search.evolves |= self.evolves;
+        }
+        for search in self.searches.iter_mut().filter(|own| own.ranges.is_none() && !own.transforms)
+        {
+            let Some((low, high)) = search.spanned.clone() else { continue };
+            self.ranges.assign(search, [low.as_slice(), high.as_slice()].into_iter());
+        }
+        self.searches
     }
 
     /// Whether what is pending may be a generation that was interrupted before `Fit_Order`, and not
     /// a simulation for another purpose. What a script adds up is known by `Fit_Order` alone.
     fn is_next_generation(&self) -> bool {
-        let Some((study, x, count)) = self.pending.only() else { return false };
-        let alike = |best: ScriptBest<'_>| match best.compared {
-            [one] => {
-                one.x == x
-                    && *one.study == *study
-                    && *best.objective == Objective::SumOfSquares(vec![1.0])
-            }
-            _ => false,
+        let Some((target, count)) = self.pending.only(&self.measurements) else { return false };
+        let Some(search) = self.searches.iter().rev().find(|own| own.targets == [target.clone()])
+        else {
+            return false;
         };
-        count == self.generation_size && self.best().is_some_and(alike)
-    }
-
-    fn span(&mut self, genomes: &Genomes) {
-        let Some(first) = genomes.rows().next() else { return };
-        let known = self.spanned.take().filter(|(low, _)| low.len() == first.len());
-        let (mut low, mut high) = known.unwrap_or_else(|| (first.to_vec(), first.to_vec()));
-        for genome in genomes.rows() {
-            for (k, &gene) in genome.iter().enumerate() {
-                (low[k], high[k]) = (low[k].min(gene), high[k].max(gene));
-            }
-        }
-        self.spanned = Some((low, high));
+        let is_sum = |objective: &Objective| *objective == Objective::SumOfSquares(vec![1.0]);
+        count == search.generation_size && search.best().is_some_and(|best| is_sum(best.objective))
     }
 
     /// At the first `Fit_Order`: what was taken for generations before, because nothing sorted,
@@ -256,93 +256,162 @@ impl Recorder {
     fn take_back(&mut self, population: &Genomes) {
         let mut known: Vec<u64> = population.rows().map(generation::key).collect();
         known.sort_unstable();
-        while let Some((part, before)) =
-            self.provisional.pop_if(|(part, _)| part.is_part_of(&known))
+        while let Some((part, place, before)) =
+            self.provisional.pop_if(|(part, ..)| part.is_part_of(&known))
         {
             let mut whole = part;
             whole.append(std::mem::take(&mut self.pending));
             self.pending = whole;
-            let (best, comparison) = before.unzip();
-            self.observed.take_back(best);
-            self.comparison = comparison;
+            self.searches[place].take_back(before);
+            self.generations -= 1;
+            if self.searches[place].observed.history.generations.is_empty() {
+                // The last one: those that began after it were taken back before.
+                self.searches.truncate(place);
+            }
         }
         self.provisional = Vec::new();
+        self.current = self.searches.len().saturating_sub(1);
     }
 
-    /// A generation that the script has not sorted: the sum over its series.
-    fn end_pending_generation(&mut self) {
-        let individuals = self.pending.genomes().to_vec();
-        let experiments = self.pending.covering(&individuals);
-        let sums = self.pending.sums(&experiments, &individuals, &self.measurements);
+    /// Generations that the script has not sorted, of one search or several: the sum over the series of
+    /// each.
+    fn end_pending_generations(&mut self) {
+        let groups = self.pending.groups();
+        let mut parts: Vec<Generation> = Vec::new();
+        for (number, group) in groups.iter().enumerate() {
+            // Each that was taken out leaves the places of the others less.
+            let earlier = groups[..number].iter().flatten();
+            let earlier: Vec<usize> = earlier.copied().collect();
+            let now = |place: &usize| place - earlier.iter().filter(|gone| *gone < place).count();
+            let places: Vec<usize> = group.iter().map(now).collect();
+            parts.push(self.pending.take(&places));
+        }
+        self.pending.clear();
+        let evolves = std::mem::take(&mut self.evolves);
+        for part in parts {
+            self.end_unsorted(part, evolves);
+        }
+        while self.provisional.iter().map(|(part, ..)| part.size()).sum::<usize>() > PROVISIONAL {
+            self.provisional.remove(0);
+        }
+    }
+
+    /// A generation that the script has not sorted.
+    fn end_unsorted(&mut self, part: Generation, evolves: bool) {
+        let experiments = part.places();
+        let individuals = part.genomes(0).to_vec();
+        let sums = part.sums(&experiments, &individuals, &self.measurements);
         let total = |sums: &Vec<f64>| if sums.is_empty() { f64::NAN } else { sums.iter().sum() };
         let mut fitness: Vec<f64> = sums.iter().map(total).collect();
         if fitness.iter().all(|fitness| fitness.is_nan()) {
-            return self.pending.clear();
+            return self.pending.count(&part.tally());
         }
         for value in fitness.iter_mut().filter(|value| has_failed(**value)) {
             *value = crate::ga::FAILED_FITNESS;
         }
-        let before = self.observed.best.clone().zip(self.comparison.clone());
-        let part = self.pending.clone();
-        self.end_generation(&individuals, &fitness, false);
+        let targets = part.targets(&experiments, &self.measurements);
+        let objective = match part.has_ratings() && targets.len() == 1 {
+            true => Objective::SumOfSquares(vec![1.0]),
+            false => Objective::Assumed,
+        };
+        let place = self.search_that_compares(&targets);
+        let before = self.searches[place].before();
+        self.evolves = evolves;
+        let ended = Ended { individuals: &individuals, fitness: &fitness, objective };
+        self.end_generation(place, &part, ended);
         if !self.sorted_by_fit_order {
-            self.provisional.push((part, before));
-            while self.provisional.iter().map(|(part, _)| part.size()).sum::<usize>() > PROVISIONAL
-            {
-                self.provisional.remove(0);
+            self.provisional.push((part, place, before));
+        }
+    }
+
+    /// A generation that `Fit_Order` got; the place of its search.
+    fn end_sorted(&mut self, individuals: &[Vec<f64>], fitness: &[f64]) -> usize {
+        let mut experiments = self.pending.covering(individuals);
+        if experiments.is_empty() {
+            experiments = self.pending.fresh_places();
+        }
+        let sums = self.pending.sums(&experiments, individuals, &self.measurements);
+        let objective = recognized(&sums, fitness);
+        let (place, experiments, objective) = self.search_of(experiments, objective);
+        let part = self.pending.take(&experiments);
+        self.pending.leave(individuals);
+        self.end_generation(place, &part, Ended { individuals, fitness, objective });
+        place
+    }
+
+    /// The search that a generation belongs to, the experiments that are of it, and what the script
+    /// minimizes: experiments that do not count in the fitness may be those of another search, or
+    /// checks.
+    fn search_of(
+        &mut self,
+        experiments: Vec<usize>,
+        objective: Objective,
+    ) -> (usize, Vec<usize>, Objective) {
+        let all = self.pending.targets(&experiments, &self.measurements);
+        let owners = self.pending.experiments_of_series(&experiments);
+        let weights = objective.weights(all.len()).unwrap_or_else(|| vec![1.0; all.len()]);
+        let counts = |k: usize| weights[k] != 0.0;
+        let is_used = |own: usize| (0..all.len()).any(|k| owners[k] == own && counts(k));
+        let used: Vec<Target> =
+            (0..all.len()).filter(|k| counts(*k)).map(|k| all[k].clone()).collect();
+        let known = |is_it: &dyn Fn(&ScriptSearch) -> bool| self.searches.iter().rposition(is_it);
+        let whole = match known(&|search| search.compares(&used)) {
+            Some(_) => None,
+            None => known(&|search| search.compares(&all)).or_else(|| {
+                let is_unknown = objective == Objective::Script;
+                known(&|search| is_unknown && search.shares(&all))
+            }),
+        };
+        if let Some(place) = whole {
+            return (place, experiments, objective);
+        }
+        let series: Vec<usize> = (0..all.len()).filter(|k| is_used(owners[*k])).collect();
+        let own = experiments.into_iter().filter(|own| is_used(*own)).collect();
+        (self.search_that_compares(&used), own, objective.of_series(&series))
+    }
+
+    /// The place of the search that compares this, which may begin now.
+    fn search_that_compares(&mut self, targets: &[Target]) -> usize {
+        let known = self.searches.iter().rposition(|search| search.compares(targets));
+        known.unwrap_or_else(|| {
+            if let Some(before) = self.seeds_before.take().filter(|_| !self.searches.is_empty()) {
+                self.seeds = before.of_next_search(&self.seeds);
+                self.changes.clear();
             }
-        }
-    }
-
-    fn end_generation(&mut self, individuals: &[Vec<f64>], fitness: &[f64], sorted: bool) {
-        self.generation_size = fitness.len();
-        let mut observed = std::mem::take(&mut self.observed);
-        let mut comparison = None;
-        let counts = |k: usize| {
-            comparison = self.comparison_of(k, individuals, fitness, sorted);
-            comparison.is_some()
-        };
-        if observed.generation(fitness, |k| individuals[k].clone(), counts) {
-            self.comparison = comparison;
-        }
-        self.observed = observed;
-        self.pending.clear();
-    }
-
-    /// What individual `k` was compared with, if it is better than the best so far.
-    fn comparison_of(
-        &self,
-        k: usize,
-        all: &[Vec<f64>],
-        fitness: &[f64],
-        sorted: bool,
-    ) -> Option<Comparison> {
-        let experiments = self.pending.covering(all);
-        let compared = self.pending.compared(&experiments, &all[k], &self.measurements);
-        if compared.is_empty() {
-            return None;
-        }
-        let objective = match (sorted, self.pending.has_ratings(), compared.len()) {
-            (false, true, 1) => Objective::SumOfSquares(vec![1.0]),
-            (false, ..) => Objective::Assumed,
-            (true, ..) => {
-                recognized(&self.pending.sums(&experiments, all, &self.measurements), fitness)
+            if let Some(old) = self.searches.len().checked_sub(IN_DETAIL) {
+                self.searches[old].observed.kept = Vec::new();
             }
-        };
-        let before = self.comparison.as_ref().map(|before| &before.objective);
-        Some(Comparison { objective: objective.agreeing(before), compared })
+            self.searches.push(ScriptSearch {
+                targets: targets.to_vec(),
+                generations_of_run: [self.generations + 1, 0],
+                ..ScriptSearch::default()
+            });
+            self.searches.len() - 1
+        })
     }
-}
 
-impl ScriptBest<'_> {
-    /// The sum of squared residuals over all series, each times its weight; `None` where the
-    /// objective is not of this kind or data are not known.
-    pub fn sum_of_squares(&self) -> Option<f64> {
-        let weights = self.objective.weights(self.compared.len())?;
-        let one = |(compared, weight): (&Compared, f64)| {
-            Some(weight * sum_of_squares(&compared.simulated, compared.measured.as_deref()?))
-        };
-        self.compared.iter().zip(weights).map(one).sum()
+    /// A generation of a search ends.
+    fn end_generation(&mut self, place: usize, part: &Generation, ended: Ended<'_>) {
+        self.generations += 1;
+        self.current = place;
+        self.seeds_before = None;
+        let is_last = place + 1 == self.searches.len();
+        let search = &mut self.searches[place];
+        let number = search.observed.history.generations.len() + 1;
+        search.changes.extend(self.changes.drain(..).map(|what| (number, what)));
+        if is_last {
+            search.seed = self.seeds.seed;
+        }
+        search.generations_of_run[1] = self.generations;
+        search.seconds += self.seconds[1] - self.seconds[0];
+        self.seconds[0] = self.seconds[1];
+        search.evolves |= std::mem::take(&mut self.evolves);
+        search.count(&part.tally());
+        search.span(part.all_genomes());
+        if !search.transforms {
+            self.ranges.assign(search, ended.individuals.iter().map(Vec::as_slice));
+        }
+        search.ended(part, ended, &self.measurements);
     }
 }
 
@@ -360,6 +429,7 @@ mod tests {
             x: quantity("time"),
             y: quantity("y"),
             descriptions: crate::Descriptions::default(),
+            changes: 0,
         })
     }
 
@@ -373,6 +443,13 @@ mod tests {
         Simulated { rows: rows.to_vec(), failures: rows.iter().map(failure).collect() }
     }
 
+    /// The only search of a run that has ended.
+    fn ended(recorder: Recorder) -> ScriptSearch {
+        let mut all = recorder.finished();
+        assert_eq!(all.len(), 1);
+        all.pop().unwrap()
+    }
+
     #[test]
     fn fit_order_ends_a_generation() {
         let mut recorder = Recorder::default();
@@ -383,12 +460,12 @@ mod tests {
             recorder.rated(first..first + 3, &[0.0]);
             recorder.ordered(&population, &[9.0, 1.0, 1e60]);
         }
-        recorder.finish();
-        assert_eq!(recorder.observed.history.generations.len(), 2);
-        assert_eq!(recorder.observed.history.generations[1].failures, 1);
-        assert_eq!((recorder.evaluations, recorder.observed.failures), (6, 2));
-        assert_eq!(recorder.observed.causes["log of -1"], 2);
-        let best = recorder.best().unwrap();
+        let search = ended(recorder);
+        assert_eq!(search.observed.history.generations.len(), 2);
+        assert_eq!(search.observed.history.generations[1].failures, 1);
+        assert_eq!((search.evaluations, search.observed.failures.count), (6, 2));
+        assert_eq!(search.observed.failures.causes["log of -1"], 2);
+        let best = search.best().unwrap();
         assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (1.0, 1.0, 1.0));
         assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0]));
         assert_eq!(best.compared[0].measured, Some(vec![0.0]));
@@ -408,13 +485,17 @@ mod tests {
             );
             recorder.rated(first..first + 3, &[0.0]);
             recorder.ordered(&genomes(&[0.0, 1.0, 2.0]), &[1.0, 100.0, 1e60]);
-            recorder.searched(&[-3.0], &[3.0]);
-            assert_eq!(recorder.observed.history.generations.len(), generation + 1);
+            recorder.searched(&[-3.0], &[3.0], &genomes(&[0.0, 1.0, 2.0]));
+            assert_eq!(
+                recorder.current().unwrap().observed.history.generations.len(),
+                generation + 1
+            );
         }
-        let best = recorder.best().unwrap();
+        let search = ended(recorder);
+        let best = search.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (1.0, 1.0));
         assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0]));
-        assert_eq!((&recorder.ranges, &recorder.spanned), (&None, &Some((vec![1.0], vec![100.0]))));
+        assert_eq!((&search.ranges, &search.spanned), (&None, &Some((vec![1.0], vec![100.0]))));
     }
 
     #[test]
@@ -424,7 +505,7 @@ mod tests {
             recorder.evaluated(&study(), &[0.0], &genomes(&[1.0, 10.0]), &simulated(&[1.0, 10.0]));
         recorder.rated(first..first + 2, &[0.0]);
         recorder.ordered(&genomes(&[0.0, 1.0]), &[5.0, 7.0]);
-        assert!(recorder.best().is_none());
+        assert!(ended(recorder).best().is_none());
     }
 
     #[test]
@@ -440,8 +521,9 @@ mod tests {
             let population = genomes(&[3, 2, 1].map(|value| f64::from(value - generation)));
             recorder.ordered(&population, population.values());
         }
-        assert_eq!(recorder.observed.history.generations.len(), 2);
-        assert_eq!(recorder.best().unwrap().fitness, 0.0);
+        let search = ended(recorder);
+        assert_eq!(search.observed.history.generations.len(), 2);
+        assert_eq!(search.best().unwrap().fitness, 0.0);
     }
 
     #[test]
@@ -453,10 +535,10 @@ mod tests {
         recorder.seeded(seed(2.0), seed(4.0), 2);
         recorder.ordered(&genomes(&[5.0]), &[42.0]);
         recorder.seeded(seed(7.0), seed(8.0), 1);
-        let before = recorder.begin_next();
-        assert_eq!((before.seed(), before.evaluations), (Some(seed(1.0)), 1));
+        let before = recorder.begin_next().pop().unwrap();
+        assert_eq!((before.seed, before.evaluations), (Some(seed(1.0)), 1));
         recorder.seeded(seed(8.0), seed(10.0), 1);
-        assert_eq!((recorder.seed(), recorder.evaluations), (Some(seed(7.0)), 0));
+        assert_eq!((recorder.seeds.seed, recorder.tally.simulations), (Some(seed(7.0)), 0));
     }
 
     /// Two populations are simulated before either is compared, and compared the other way round.
@@ -471,12 +553,12 @@ mod tests {
             &simulated(&[2.0, 3.0, 4.0]),
         );
         recorder.rated(2..=4, &[3.0]);
-        assert!(recorder.observed.history.generations.is_empty());
+        assert!(!recorder.has_generations());
         recorder.rated([1], &[3.0]);
-        recorder.finish();
-        let best = recorder.best().unwrap();
+        let search = ended(recorder);
+        let best = search.best().unwrap();
         assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (3.0, 0.0, 3.0));
-        assert_eq!(recorder.observed.history.generations.len(), 1);
+        assert_eq!(search.observed.history.generations.len(), 1);
     }
 
     /// Some individuals of an `Eval`, and those of several put together, are known as well.
@@ -490,8 +572,8 @@ mod tests {
         recorder.rated([17], &[4.0]);
         assert!(!recorder.pending.is_rated(), "that individual is not known");
         recorder.rated([1], &[4.0]);
-        recorder.finish();
-        let best = recorder.best().unwrap();
+        let search = ended(recorder);
+        let best = search.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (5.0, 1.0));
     }
 
@@ -519,8 +601,7 @@ mod tests {
         assert!(!recorder.pending.is_rated(), "the other experiment was not compared");
         recorder.rated([other, other + 1], &[4.0]);
         assert!(recorder.pending.is_rated());
-        let before = recorder.begin_next();
-        assert_eq!(before.numbered, 4);
+        recorder.begin_next();
         let later = recorder.evaluated(&study(), &[0.0], &genomes(&[1.0]), &simulated(&[1.0]));
         assert_eq!(later, 5, "no number comes twice");
     }
@@ -530,7 +611,7 @@ mod tests {
     }
 
     /// Two experiments a generation, whose sums the script adds; `total` is what it adds up.
-    fn two_experiments(total: fn(f64, f64) -> f64) -> Recorder {
+    fn two_experiments(total: fn(f64, f64) -> f64) -> ScriptSearch {
         let mut recorder = Recorder::default();
         for generation in 0..3 {
             let genes: Vec<f64> =
@@ -544,16 +625,15 @@ mod tests {
             let sums = genes.iter().map(|g| total((g - 4.0).powi(2), (2.0 * g - 9.0).powi(2)));
             recorder.ordered(&genomes(&genes), &sums.collect::<Vec<f64>>());
         }
-        recorder.finish();
-        recorder
+        ended(recorder)
     }
 
     #[test]
     fn a_generation_with_several_experiments_is_one() {
-        let recorder = two_experiments(|a, b| a + b);
-        assert_eq!((recorder.observed.history.generations.len(), recorder.evaluations), (3, 30));
-        assert_eq!(recorder.observed.history.generations[0].best, 1.0, "not a partial sum");
-        let best = recorder.best().unwrap();
+        let search = two_experiments(|a, b| a + b);
+        assert_eq!((search.observed.history.generations.len(), search.evaluations), (3, 30));
+        assert_eq!(search.observed.history.generations[0].best, 1.0, "not a partial sum");
+        let best = search.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (4.0, 1.0));
         assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0, 1.0]));
         let models: Vec<&str> = best.compared.iter().map(|c| c.study.model.as_str()).collect();
@@ -562,8 +642,8 @@ mod tests {
 
     #[test]
     fn the_weights_of_the_script_are_found() {
-        let recorder = two_experiments(|a, b| a + 0.25 * b);
-        let best = recorder.best().unwrap();
+        let search = two_experiments(|a, b| a + 0.25 * b);
+        let best = search.best().unwrap();
         let Objective::SumOfSquares(weights) = best.objective else { panic!("{best:?}") };
         assert!((weights[0] - 1.0).abs() < 1e-9 && (weights[1] - 0.25).abs() < 1e-9);
         assert_eq!(*two_experiments(|a, b| a + b * b).best().unwrap().objective, Objective::Script);
@@ -577,10 +657,10 @@ mod tests {
         recorder.ordered(&genomes(&[5.0]), &[9.0]);
         recorder.evaluated(&study(), &[1.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.rated([2], &[3.0]);
-        recorder.finish();
-        assert_eq!(recorder.observed.history.generations.len(), 1);
-        assert_eq!(recorder.best().unwrap().fitness, 9.0);
-        assert_eq!(recorder.best().unwrap().compared[0].measured, Some(vec![0.0]));
+        let search = ended(recorder);
+        assert_eq!(search.observed.history.generations.len(), 1);
+        assert_eq!(search.best().unwrap().fitness, 9.0);
+        assert_eq!(search.best().unwrap().compared[0].measured, Some(vec![0.0]));
     }
 
     #[test]
@@ -591,10 +671,10 @@ mod tests {
                 recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &simulated(&[value]));
             recorder.rated([one], &[0.0]);
         }
-        assert_eq!(recorder.observed.history.generations.len(), 1);
-        recorder.finish();
-        assert_eq!(recorder.observed.history.generations.len(), 2);
-        assert_eq!(recorder.best().unwrap().genome, [2.0]);
+        assert_eq!(recorder.current().unwrap().observed.history.generations.len(), 1);
+        let search = ended(recorder);
+        assert_eq!(search.observed.history.generations.len(), 2);
+        assert_eq!(search.best().unwrap().genome, [2.0]);
     }
 
     #[test]
@@ -602,9 +682,9 @@ mod tests {
         let mut recorder = Recorder::default();
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
         recorder.ordered(&genomes(&[5.0]), &[42.0]);
-        recorder.finish();
-        assert_eq!(recorder.best().unwrap().fitness, 42.0);
-        assert_eq!(recorder.best().unwrap().objective, &Objective::Script);
+        let search = ended(recorder);
+        assert_eq!(search.best().unwrap().fitness, 42.0);
+        assert_eq!(search.best().unwrap().objective, &Objective::Script);
     }
 
     #[test]
@@ -612,9 +692,9 @@ mod tests {
         let mut recorder = Recorder::default();
         recorder.measured(Measurement { file: "d.mat".into(), x: vec![0.0], y: vec![1.0] });
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
-        recorder.finish();
-        assert_eq!(recorder.best().unwrap().fitness, 4.0);
-        assert_eq!(recorder.best().unwrap().objective, &Objective::Assumed);
+        let search = ended(recorder);
+        assert_eq!(search.best().unwrap().fitness, 4.0);
+        assert_eq!(search.best().unwrap().objective, &Objective::Assumed);
     }
 
     #[test]
@@ -623,8 +703,125 @@ mod tests {
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.ordered(&genomes(&[5.0]), &[9.0]);
         recorder.evaluated(&study(), &[0.0], &genomes(&[4.0]), &simulated(&[3.0]));
-        recorder.finish();
-        assert_eq!(recorder.observed.history.generations.len(), 1);
-        assert_eq!(recorder.evaluations, 2);
+        let search = ended(recorder);
+        assert_eq!(search.observed.history.generations.len(), 1);
+        assert_eq!(search.evaluations, 2);
+    }
+
+    /// One generation of a search: individuals whose simulations are their genes.
+    fn generation_of(recorder: &mut Recorder, study: &Arc<Study>, genes: &[f64], measured: f64) {
+        let population = genomes(genes);
+        let first = recorder.evaluated(study, &[0.0], &population, &simulated(genes));
+        recorder.rated(first..first + genes.len() as u64, &[measured]);
+        let fitness: Vec<f64> = genes.iter().map(|gene| (gene - measured).powi(2)).collect();
+        recorder.ordered(&population, &fitness);
+    }
+
+    /// Genes of the best individual, its fitness, generations and simulations of each search.
+    fn found(recorder: Recorder) -> Vec<(f64, f64, u64, u64)> {
+        let one = |search: &ScriptSearch| {
+            let best = search.best().unwrap();
+            (best.genome[0], best.fitness, search.observed.generations(), search.evaluations)
+        };
+        recorder.finished().iter().map(one).collect()
+    }
+
+    /// The first search fits better: its best individual is none of the second.
+    #[test]
+    fn other_measured_values_are_another_search() {
+        let mut recorder = Recorder::default();
+        for generation in [0.0, 0.5] {
+            generation_of(&mut recorder, &study(), &[3.0 - generation, 5.0, 4.0], 2.0);
+        }
+        for generation in [0.0, 0.5, 1.0] {
+            generation_of(&mut recorder, &study(), &[3.0, 1.0, 4.0 + generation], 9.0);
+        }
+        assert_eq!(found(recorder), [(2.5, 0.25, 2, 6), (5.0, 16.0, 3, 9)]);
+    }
+
+    #[test]
+    fn searches_may_alternate_in_one_loop() {
+        let mut recorder = Recorder::default();
+        for generation in [0.0, 1.0] {
+            generation_of(&mut recorder, &study(), &[3.0 - generation, 5.0], 1.0);
+            recorder.searched(&[0.0], &[9.0], &genomes(&[2.0, 5.0]));
+            generation_of(&mut recorder, &second(), &[30.0 - generation, 50.0, 60.0], 20.0);
+            recorder.searched(&[0.0], &[90.0], &genomes(&[29.0, 50.0, 60.0]));
+        }
+        let searches = recorder.clone().finished();
+        assert_eq!(found(recorder), [(2.0, 1.0, 2, 4), (29.0, 81.0, 2, 6)]);
+        let ranges = |k: usize| searches[k].ranges.as_ref().unwrap().1[0];
+        assert_eq!((ranges(0), ranges(1)), (9.0, 90.0));
+    }
+
+    /// Both populations are simulated and compared before either is sorted; at first they are the same.
+    #[test]
+    fn searches_may_be_sorted_after_both_were_compared() {
+        let mut recorder = Recorder::default();
+        let fitness = |genes: &[f64], measured: f64| -> Vec<f64> {
+            genes.iter().map(|gene| (gene - measured).powi(2)).collect()
+        };
+        for generation in 0..3 {
+            let one = [1.0, 2.0, 3.0, 4.0, 5.0 + f64::from(generation)];
+            let other = if generation == 0 { one } else { [6.0, 7.0, 8.0, 9.0, 10.5] };
+            let all = |first: u64| first..first + 5;
+            let first = recorder.evaluated(&study(), &[0.0], &genomes(&one), &simulated(&one));
+            recorder.rated(all(first), &[2.5]);
+            let first = recorder.evaluated(&second(), &[0.0], &genomes(&other), &simulated(&other));
+            recorder.rated(all(first), &[20.5]);
+            recorder.ordered(&genomes(&one), &fitness(&one, 2.5));
+            recorder.ordered(&genomes(&other), &fitness(&other, 20.5));
+        }
+        assert_eq!(found(recorder), [(2.0, 0.25, 3, 15), (10.5, 100.0, 3, 15)]);
+    }
+
+    /// The values of two models, compared by hand.
+    #[test]
+    fn models_that_are_simulated_once_each_are_two_searches() {
+        for others in [[7.0, 8.0], [2.0, 1.0]] {
+            let mut recorder = Recorder::default();
+            for (study, genes) in [(study(), [1.0, 2.0]), (second(), others)] {
+                let first =
+                    recorder.evaluated(&study, &[0.0], &genomes(&genes), &simulated(&genes));
+                recorder.rated(first..first + 2, &[4.0]);
+            }
+            let other = (others[0], (others[0] - 4.0).powi(2), 1, 2);
+            assert_eq!(found(recorder), [(2.0, 4.0, 1, 2), other]);
+        }
+    }
+
+    /// The whole population is compared with data that do not count in its fitness, in some generations.
+    #[test]
+    fn data_that_do_not_count_are_no_search() {
+        let mut recorder = Recorder::default();
+        let genes = [1.0, 2.0, 3.0, 4.0, 5.0];
+        for generation in 0..4 {
+            if generation % 2 == 1 {
+                let first =
+                    recorder.evaluated(&study(), &[7.0], &genomes(&genes), &simulated(&genes));
+                recorder.rated(first..first + 5, &[8.5]);
+            }
+            generation_of(&mut recorder, &study(), &genes, 2.5);
+        }
+        assert_eq!(found(recorder), [(2.0, 0.25, 4, 30)]);
+    }
+
+    /// The second begins with another seed, which is none that the first continued with.
+    #[test]
+    fn each_search_has_the_seed_that_it_began_with() {
+        let seed = |entry: f64| [entry; 6];
+        let mut recorder = Recorder::default();
+        for (measured, first) in [(2.0, 10.0), (9.0, 70.0)] {
+            recorder.seeded(seed(first), seed(first + 1.0), 1);
+            for generation in 1..=3 {
+                generation_of(&mut recorder, &study(), &[3.0, 1.0, 4.0], measured);
+                let state = first + f64::from(generation);
+                recorder.seeded(seed(state), seed(state + 1.0), 2);
+            }
+        }
+        let searches = recorder.finished();
+        let seeds: Vec<_> = searches.iter().map(|search| search.seed).collect();
+        assert_eq!(seeds, [Some(seed(10.0)), Some(seed(70.0))]);
+        assert!(searches.iter().all(|search| search.changes.is_empty()));
     }
 }

@@ -36,30 +36,50 @@ pub struct SearchRecord {
     /// Every n-th individual is kept; 0 as 1.
     keep_every: u64,
     /// Individuals whose simulation failed.
-    pub failures: u64,
+    pub failures: Failures,
+}
+
+/// Simulations that failed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Failures {
+    /// Their number.
+    pub count: u64,
     /// Why they failed, and how many for each cause.
     pub causes: IndexMap<String, u64>,
 }
 
-impl SearchRecord {
-    /// Number of generations.
-    pub fn generations(&self) -> u64 {
-        self.history.generations.len() as u64
+impl Failures {
+    /// Counts a failed simulation; the cause under which it is counted.
+    pub(crate) fn note<'a>(&mut self, cause: &'a str) -> &'a str {
+        self.note_several(cause, 1)
     }
 
-    /// Counts a failed simulation; the cause under which it is counted.
-    pub(crate) fn failed<'a>(&mut self, cause: &'a str) -> &'a str {
-        self.failures += 1;
+    fn note_several<'a>(&mut self, cause: &'a str, number: u64) -> &'a str {
+        self.count += number;
         let room = self.causes.len() < CAUSES || self.causes.contains_key(cause);
         let cause = if room { cause } else { OTHER_CAUSES };
-        *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+        *self.causes.entry(cause.to_owned()).or_insert(0) += number;
         cause
+    }
+
+    /// Counts those of another part as well.
+    pub(crate) fn add(&mut self, others: &Failures) {
+        for (cause, number) in &others.causes {
+            self.note_several(cause, *number);
+        }
     }
 
     /// The cause of most failures, and of how many.
     pub fn main_cause(&self) -> Option<(&str, u64)> {
         let most = self.causes.iter().rev().max_by_key(|(_, count)| **count);
         most.map(|(cause, count)| (cause.as_str(), *count))
+    }
+}
+
+impl SearchRecord {
+    /// Number of generations.
+    pub fn generations(&self) -> u64 {
+        self.history.generations.len() as u64
     }
 
     /// A generation with this fitness ends; `values` are those of an individual, and `counts` says

@@ -76,6 +76,17 @@ impl Seeds {
             ..Seeds::default()
         }
     }
+
+    /// The seeds of a search that began before its first simulation, as these were then; `now` is
+    /// what was drawn since.
+    pub(crate) fn of_next_search(&self, now: &Seeds) -> Seeds {
+        let mut next = self.of_next_run();
+        if let (Some(own), Some(now)) = (&mut next.chain, now.chain) {
+            own.next = now.next;
+        }
+        next.inherited = false;
+        next
+    }
 }
 
 #[cfg(test)]

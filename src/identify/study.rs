@@ -18,6 +18,8 @@ pub struct Study {
     pub y: Quantity,
     /// What the model describes X and Y as.
     pub descriptions: Descriptions,
+    /// How often a model of this name was found changed before: it is another one each time.
+    pub changes: u32,
 }
 
 impl Study {

@@ -433,7 +433,7 @@ impl Run {
         if failed.kind == FailureKind::Hopeless {
             self.hopeless.get_or_insert_with(|| failed.cause.clone());
         }
-        let cause = self.observed.failed(&failed.cause);
+        let cause = self.observed.failures.note(&failed.cause);
         if row < self.batch.len() && !self.examples.contains_key(cause) {
             let values = self.problem.values(self.batch.row(row));
             self.examples.insert(cause.to_owned(), values);

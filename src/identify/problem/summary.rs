@@ -193,7 +193,7 @@ fn best<'a>(run: &'a Run, stop: &str) -> Result<&'a Best, Fault> {
             help: "allow more time, or use fewer individuals per generation"
         ));
     }
-    let most = run.observed.causes.iter().max_by_key(|cause| cause.1);
+    let most = run.observed.failures.causes.iter().max_by_key(|cause| cause.1);
     let why = most.map_or_else(String::new, |(cause, count)| format!("; {count} times: {cause}"));
     Err(fault!(
         BAD_OPTION,
@@ -220,7 +220,7 @@ fn searched(run: &Run, stop: &str) -> Solution {
         simulations: run.simulations,
         simulations_for_statistics: 0,
         failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
-        causes: run.observed.causes.clone(),
+        causes: run.observed.failures.causes.clone(),
         failure_region: super::failure_region(&problem.parameters, &run.observed.kept),
         changes: run.changed.clone(),
     };

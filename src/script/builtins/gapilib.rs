@@ -326,7 +326,7 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     note_idle_points(session, &points, n_genes);
     ga::selection::check_sizes(old.len() as i64, parents, elites)?;
     let pairs = (parents as usize, elites as usize);
-    session.identification().recorder.evolves = true;
+    session.identification().recorder.evolves();
     session.traced(|tracer, place| {
         tracer.crossed(place, (old.values(), n_genes), pairs, &points);
     })?;
@@ -380,10 +380,7 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let minima = minima.unwrap_or_else(|| extremes(&genomes, f64::min));
     let maxima = maxima.unwrap_or_else(|| extremes(&genomes, f64::max));
     let genes = genes(&minima, &maxima, genomes.n_genes())?;
-    session.identification().recorder.evolves = true;
-    if searched {
-        session.identification().recorder.searched(&minima, &maxima);
-    }
+    session.identification().recorder.evolves();
     let call = MutationCall {
         genes: genomes.values(),
         numbers: &numbers.elements,
@@ -394,6 +391,9 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     };
     session.traced(|tracer, place| tracer.mutated(place, &call))?;
     ga::mutation::mutate_uniform(&mut genomes, elites, &genes, factor, &numbers.elements);
+    if searched {
+        session.identification().recorder.searched(&minima, &maxima, &genomes);
+    }
     Ok(genomes_value(genomes))
 }
 

@@ -58,7 +58,9 @@ impl Operator {
         let Some(kind) = operators::kind(kind) else {
             unreachable!("the commands of this file are named after the kinds")
         };
-        session.identification().recorder.evolves |= kind.name != "sampling";
+        if kind.name != "sampling" {
+            session.identification().recorder.evolves();
+        }
         let mut function = None;
         if !kind.has(&choice.name)
             && let Some(found) = own_function::function(session, &choice.name)?
@@ -199,7 +201,6 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if genes.is_empty() {
         return Err(Fault::new(SIZE_MISMATCH, "the search ranges are empty").into());
     }
-    session.identification().recorder.searched(&minima, &maxima);
     let mut draws = Draws::take(session, &mut args)?;
     let genomes = match operator.function.clone() {
         None => operators::sampling(operator.choice.clone())
@@ -212,6 +213,7 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         ),
     };
     let genomes = genomes.map_err(|fault| operator.failure(fault))?;
+    session.identification().recorder.searched(&minima, &maxima, &genomes);
     operator.traced(session, genes.len(), || Action::Sampling {
         sampled: genomes.values().to_vec(),
         minima,
@@ -343,7 +345,6 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let minima: Vec<f64> = args.take("Param_Min")?;
     let maxima: Vec<f64> = args.take("Param_Max")?;
     let genes = genes(&minima, &maxima, n_genes)?;
-    session.identification().recorder.searched(&minima, &maxima);
     let mut draws = Draws::take(session, &mut args)?;
     let elites = count(&mut args, "Elitism")?;
     let (cycle, cycles) = (count(&mut args, "Cycle")?, count(&mut args, "N_Cycles")?);
@@ -370,6 +371,7 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         };
         mutated.map_err(|fault| operator.failure(fault))?;
     }
+    session.identification().recorder.searched(&minima, &maxima, &genomes);
     operator.traced(session, n_genes, || Action::Mutation {
         before,
         after: genomes.values().to_vec(),

@@ -36,8 +36,8 @@ impl DataNotes {
     }
 
     /// What was said, for the report.
-    pub(crate) fn take(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.sentences)
+    pub(crate) fn all(&self) -> &[String] {
+        &self.sentences
     }
 }
 

@@ -8,7 +8,7 @@ use crate::fault;
 use crate::ga::Genomes;
 use crate::ga::errors::BAD_POPULATION;
 use crate::identify::problem::Failed;
-use crate::identify::{Recorder, Simulated, Study};
+use crate::identify::{Failures, ScriptSearch, Simulated, Study};
 use crate::models::simulation::{SimulationOptions, Translated, simulate, translated};
 use crate::models::static_curve::DRIVER;
 use crate::source::Span;
@@ -26,13 +26,13 @@ impl Session {
         genomes: &Genomes,
         simulated: &Simulated,
     ) -> Result<(), Failure> {
-        let recorder = &self.extension::<Identification>().recorder;
-        if recorder.evaluations > recorder.observed.failures || genomes.len() < ENOUGH {
+        let tally = self.extension::<Identification>().recorder.tally();
+        if tally.simulations > tally.failures.count || genomes.len() < ENOUGH {
             return Ok(());
         }
-        let main = recorder.observed.main_cause().map(|(cause, _)| cause);
+        let main = tally.failures.main_cause().map(|(cause, _)| cause);
         let example = simulated.failures.iter().flatten().find(|one| Some(&*one.cause) == main);
-        let fault = nothing_simulated(recorder, "stops", example);
+        let fault = nothing_simulated(&tally.failures, "the run stops", example);
         self.extension::<Identification>().is_hopeless = true;
         let first = simulated.failures.iter().position(Option::is_some).unwrap_or(0);
         let place = self.place_of_failure((study, x), genomes.row(first));
@@ -42,15 +42,24 @@ impl Session {
         })
     }
 
-    /// Reports a run that ends without any success, if that was not reported yet.
-    pub(super) fn report_if_all_failed(&mut self, recorder: &Recorder, interrupted: bool) {
+    /// Reports a search that ends without any success, if that was not reported yet.
+    pub(super) fn report_if_all_failed(
+        &mut self,
+        (search, is_only): (&ScriptSearch, bool),
+        interrupted: bool,
+    ) {
         let identification = self.extension::<Identification>();
         let has_said = std::mem::take(&mut identification.is_hopeless);
-        let all_failed = recorder.evaluations == recorder.observed.failures;
-        if all_failed && recorder.observed.failures > 0 && !has_said && !interrupted {
-            let fault = nothing_simulated(recorder, "has no result", None).at(Span::NONE);
+        let failures = &search.observed.failures;
+        let all_failed = search.evaluations == failures.count;
+        if all_failed && failures.count > 0 && !has_said && !interrupted {
+            let what = match is_only {
+                true => "the run has no result".to_owned(),
+                false => format!("the search of {} has no result", search.models()),
+            };
+            let fault = nothing_simulated(failures, &what, None).at(Span::NONE);
             // One individual alone is a question of the script, which gets its answer, 1e60.
-            self.report(if recorder.observed.failures == 1 { fault.warning() } else { fault });
+            self.report(if failures.count == 1 { fault.warning() } else { fault });
         }
     }
 
@@ -98,12 +107,12 @@ impl Session {
     }
 }
 
-fn nothing_simulated(recorder: &Recorder, consequence: &str, example: Option<&Failed>) -> Fault {
-    let all = match recorder.observed.failures {
+fn nothing_simulated(failures: &Failures, consequence: &str, example: Option<&Failed>) -> Fault {
+    let all = match failures.count {
         1 => "the only individual could not be simulated".to_owned(),
         all => format!("none of {all} individuals could be simulated"),
     };
-    let most = recorder.observed.main_cause().map(|(cause, count)| {
+    let most = failures.main_cause().map(|(cause, count)| {
         let text = example.map_or_else(|| cause.to_owned(), Failed::to_string);
         match count {
             1 => format!(": {text}"),
@@ -112,7 +121,7 @@ fn nothing_simulated(recorder: &Recorder, consequence: &str, example: Option<&Fa
     });
     fault!(
         BAD_POPULATION,
-        "the run {consequence}: {all}{}",
+        "{consequence}: {all}{}",
         most.unwrap_or_default();
         help: "correct the model, the units of the data, or the search ranges"
     )

@@ -66,8 +66,10 @@ impl Session {
                 simulated
             }
         };
+        let now = self.world.monotonic_seconds();
         let identification = self.identification();
         let recorder = &mut identification.recorder;
+        recorder.at(now - identification.started.unwrap_or(now));
         let first = recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         let is_relative = evaluator.model().is_relative(&study.y.name);
@@ -75,7 +77,7 @@ impl Session {
         let individuals = first..first + genomes.len() as u64;
         self.population_simulated(&study, individuals, is_relative);
         self.trace_simulation((&study, &x), genomes, &simulated)?;
-        self.show_run(&study, genomes);
+        self.show_run((&study, &x), genomes);
         self.stop_if_all_fail((&study, &x), genomes, &simulated)?;
         Ok((simulated, first))
     }

@@ -17,6 +17,7 @@ use crate::models::translated::Translated;
 use crate::models::uses::Uses;
 use crate::models::{simulation, static_curve};
 use crate::{bail, mat, results};
+use rustc_hash::FxHashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,8 +31,10 @@ pub(crate) struct Identification {
     pub(crate) recorder: Recorder,
     /// The evaluators of the last requests, for the next generation; the latest is the last.
     pub(super) prepared: Vec<Prepared>,
-    /// What was viewed last: model, individuals, and how many generations there will be.
-    pub(super) shown: Option<(Study, Genomes, u64)>,
+    /// What was viewed last.
+    pub(super) shown: Option<Shown>,
+    /// How often models of these names were found changed.
+    changed_models: FxHashMap<String, u32>,
     /// When the run began.
     pub(super) started: Option<f64>,
     /// Whether measured data could not be read.
@@ -44,12 +47,23 @@ pub(crate) struct Identification {
     pub(super) first_message: usize,
 }
 
+/// What was viewed of a search.
+pub(super) struct Shown {
+    pub(super) study: Study,
+    pub(super) x: Vec<f64>,
+    pub(super) genomes: Genomes,
+    /// How many generations there will be; 0 where not known.
+    pub(super) generations: u64,
+}
+
 /// An evaluator that is ready for the next population.
 pub(super) struct Prepared {
     /// With the model as it was in use.
     pub(super) request: Request,
     /// What its model depends on.
     uses: Uses,
+    /// Whether the model was found changed since: it answers no request any more, but is reported.
+    is_outdated: bool,
     /// The class that is simulated, which may be one around the model.
     class: String,
     pub(super) evaluator: Evaluator,
@@ -228,26 +242,36 @@ impl Session {
             question.x = x;
         }
         let processors = self.world.processors();
-        let evaluator = Evaluator::on(Arc::new(model), question, &processors)?;
+        let changes = &self.extension::<Identification>().changed_models;
+        let changes = changes.get(&request.model).copied().unwrap_or(0);
+        let evaluator =
+            Evaluator::on(Arc::new(model), question, &processors)?.of_changed_model(changes);
         self.note_idle_ranks(evaluator.alone());
         let roots = static_curve::without_class_around(&translated.roots);
         let (uses, class) = (self.uses_of(&roots, &translated.files), translated.problem.clone());
-        Ok(Prepared { request, uses, class, evaluator })
+        Ok(Prepared { request, uses, is_outdated: false, class, evaluator })
     }
 
     /// The evaluator of this request, if it is at hand and neither the classes of its model, the files
     /// that it reads nor what was set by hand have changed since.
     pub(super) fn take_prepared(&mut self, request: &Request, in_use: &InUse) -> Option<Prepared> {
         let is_it = |known: &Prepared| {
-            known.request.model == in_use.shown
+            !known.is_outdated
+                && known.request.model == in_use.shown
                 && known.request.path == request.path
                 && known.request.question == request.question
         };
         let prepared = &mut self.extension::<Identification>().prepared;
         if let Some(place) = prepared.iter().position(is_it) {
             let known = prepared.remove(place);
-            return self.is_unchanged(&known.uses).then_some(known);
+            if self.is_unchanged(&known.uses) {
+                return Some(known);
+            }
+            let identification = self.extension::<Identification>();
+            *identification.changed_models.entry(known.request.model.clone()).or_insert(0) += 1;
+            identification.prepared.insert(place, Prepared { is_outdated: true, ..known });
         }
+        let prepared = &mut self.extension::<Identification>().prepared;
         if prepared.len() >= PREPARED {
             prepared.remove(0);
         }

@@ -60,7 +60,7 @@ impl Session {
         let recorder = &mut self.identification().recorder;
         recorder.rated(done.numbers, &refinement.measured);
         let ends = |end: fn(&Free) -> f64| refinement.ranges.iter().map(end).collect::<Vec<f64>>();
-        recorder.searched(&ends(|free| free.min), &ends(|free| free.max));
+        recorder.searched(&ends(|free| free.min), &ends(|free| free.max), &done.genomes);
         recorder.refined(&done.genomes, &done.fitness);
         match best(&done.genomes, &done.fitness).filter(|found| !has_failed(found.fitness)) {
             Some(found) => Ok((found, count)),

@@ -1,16 +1,18 @@
-//! The report of an identification by a script: when its outermost script ends, or data are read that
-//! begin another run.
+//! The reports of an identification by a script, one for each of its searches: when its outermost
+//! script ends, or data are read that begin another run.
 
 use super::identification::{Identification, Prepared};
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::errors::BAD_POPULATION;
+use crate::identify::errors::SEVERAL_SEARCHES;
 use crate::identify::problem::{
     Finding, FindingKind, NOISE_OF_FORMULAS, ScriptError, Severity, Solution,
 };
-use crate::identify::{Ending, Measurement, Recorder};
+use crate::identify::{Compared, Ending, Measurement, Model, ScriptSearch};
 use crate::models::data_notes::DataNotes;
 use crate::source::Span;
 use crate::{Reporting, Session};
+use std::sync::Arc;
 
 impl Session {
     /// The identification of this session; its report is made when the outermost script ends.
@@ -25,7 +27,7 @@ impl Session {
     /// Notes measured data. Data read after generations have been evaluated begin another run: the
     /// one before is reported.
     pub(crate) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
-        if !self.identification().recorder.observed.history.generations.is_empty() {
+        if self.identification().recorder.has_generations() {
             let own = self.extension::<DataNotes>().split_off_measurement();
             report_run(self)?;
             self.extension::<DataNotes>().begin_run(own);
@@ -60,38 +62,82 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
     report_run(session).map_err(|fault| fault.at(Span::NONE))
 }
 
-/// The report of a run: the table for people, and the files for programs. Nothing when no
-/// individual was simulated successfully.
+/// The reports of a run, one of each of its searches: the table for people, and the files for
+/// programs. Nothing of a search of which no individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
     let error = session.unhandled_error();
-    let (processors, probe) = (session.world.processors(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
-    let recorder = identification.recorder.begin_next();
-    session.show_end(&recorder);
-    session.report_if_all_failed(&recorder, interrupted);
+    let searches = identification.recorder.begin_next();
+    session.show_end(&searches);
+    for search in &searches {
+        session.report_if_all_failed((search, searches.len() == 1), interrupted);
+    }
     if session.options.reporting == Reporting::Off {
         session.world.end_view();
         return Ok(());
     }
-    let Some(best) = recorder.best() else {
-        note_unknown_best(session, &recorder);
+    let newest = searches.last().map_or(0, |search| search.generations_of_run[0]);
+    let reported = reported(session, &searches);
+    let before = session.world.monotonic_seconds() - started.unwrap_or_default();
+    for number in reported {
+        let search = &searches[number];
+        let is_over = search.generations_of_run[1] < newest;
+        let stopped = Stopped { interrupted, error: error.clone(), is_over };
+        let seconds = if searches.len() == 1 { before } else { search.seconds };
+        let number = [number + 1, searches.len()];
+        report_search(session, (search, number), stopped, seconds)?;
+    }
+    session.extension::<DataNotes>().begin_run(Vec::new());
+    session.world.end_view();
+    Ok(())
+}
+
+/// What has stopped a run, if anything has.
+struct Stopped {
+    interrupted: bool,
+    error: Option<ScriptError>,
+    /// Whether the search had ended before.
+    is_over: bool,
+}
+
+/// Searches of one run that have a report of their own; a script with more repeats a search for
+/// samples, or compares other data in each generation.
+const REPORTED: usize = 20;
+
+/// The searches that are reported: the longest ones, and of equal ones the last.
+fn reported(session: &mut Session, searches: &[ScriptSearch]) -> Vec<usize> {
+    let mut longest: Vec<usize> = (0..searches.len()).collect();
+    let generations = |k: usize| searches[k].observed.generations();
+    longest.sort_by_key(|&k| (std::cmp::Reverse(generations(k)), std::cmp::Reverse(k)));
+    longest.truncate(REPORTED);
+    longest.sort_unstable();
+    if searches.len() > REPORTED {
+        let text = format!(
+            "the script has compared {} different models or sets of measured points; {REPORTED} of \
+             these searches are reported, those with the most generations and of these the last; \
+             print what you need of the others",
+            searches.len()
+        );
+        session.note(SEVERAL_SEARCHES, text);
+    }
+    longest
+}
+
+fn report_search(
+    session: &mut Session,
+    (search, number): (&ScriptSearch, [usize; 2]),
+    Stopped { interrupted, error, is_over }: Stopped,
+    seconds: f64,
+) -> Result<(), Fault> {
+    let began = session.world.monotonic_seconds();
+    let Some(best) = search.best() else {
+        note_unknown_best(session, search);
         return Ok(());
     };
-    let identification = session.extension::<Identification>();
-    let mut noise = NOISE_OF_FORMULAS;
-    let mut models = Vec::new();
-    for compared in best.compared {
-        let own = |prepared: &&mut Prepared| {
-            prepared.evaluator.study() == &compared.study && prepared.evaluator.x() == compared.x
-        };
-        let own = identification.prepared.iter_mut().rev().find(own);
-        models.push(own.map(|own| {
-            noise = noise.max(own.evaluator.noise());
-            own.evaluator.model().clone()
-        }));
-    }
+    let (processors, probe) = (session.world.processors(), session.options.probe);
+    let (models, noise) = models_of(session, best.compared);
     let compared: Vec<_> = best
         .compared
         .iter()
@@ -103,16 +149,15 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
         })
         .collect();
     let ending =
-        Ending { recorder: &recorder, models, noise, processors, probe, interrupted, error };
+        Ending { number, search, models, noise, processors, probe, interrupted, is_over, error };
     let Some(mut solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
     for (measured, study, is_relative) in compared {
         session.compared(&measured, &study.model, (&study.y, is_relative));
     }
-    let notes = session.extension::<DataNotes>().take();
+    let notes = session.extension::<DataNotes>().all().to_vec();
     solution.findings.extend(notes.iter().cloned().map(about_data));
-    let now = session.world.monotonic_seconds();
-    let seconds = now - started.unwrap_or(now);
+    let seconds = seconds + session.world.monotonic_seconds() - began;
     let said = if session.world.is_one_screen() { notes } else { Vec::new() };
     let timed = |text: String| format!("{text}  {:<12} {seconds:.2} s\n", "time");
     let [shown, whole] = [solution.text_after(&said), solution.text()].map(timed);
@@ -120,10 +165,28 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     write_files(session, &solution, seconds)
 }
 
-/// Says why a run that has simulated generations has no report: its best individual is not known.
-fn note_unknown_best(session: &mut Session, recorder: &Recorder) {
-    let simulated = recorder.evaluations - recorder.observed.failures;
-    if recorder.evolves && simulated > 0 && !session.is_interrupted() {
+/// The models of these series, where they are at hand, and the largest relative error of their
+/// simulations.
+fn models_of(session: &mut Session, all: &[Compared]) -> (Vec<Option<Arc<dyn Model>>>, f64) {
+    let prepared = &session.extension::<Identification>().prepared;
+    let own = |compared: &Compared| {
+        let is_its = |prepared: &&Prepared| {
+            let evaluator = &prepared.evaluator;
+            *evaluator.study() == compared.study && evaluator.x() == compared.x
+        };
+        prepared.iter().rev().find(is_its)
+    };
+    let found: Vec<Option<&Prepared>> = all.iter().map(own).collect();
+    let noise = found.iter().flatten().map(|own| own.evaluator.noise());
+    let noise = noise.fold(NOISE_OF_FORMULAS, f64::max);
+    let model = |own: &Prepared| own.evaluator.model().clone();
+    (found.iter().map(|own| own.map(model)).collect(), noise)
+}
+
+/// Says why a search that has simulated generations has no report: its best individual is not known.
+fn note_unknown_best(session: &mut Session, search: &ScriptSearch) {
+    let simulated = search.evaluations - search.observed.failures.count;
+    if search.evolves && simulated > 0 && !session.is_interrupted() {
         let text = format!(
             "there is no report of {simulated} simulations: the individuals that were sorted are not \
              those that `Eval` has simulated, and their fitness is not the sum of squares of these; \

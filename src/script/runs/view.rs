@@ -80,8 +80,11 @@ impl Progress {
             done,
             total,
             best: record.best.as_ref().map(|best| best.fitness),
-            failures: record.failures,
-            main_cause: record.main_cause().map(|(cause, count)| (cause.to_owned(), count)),
+            failures: record.failures.count,
+            main_cause: record
+                .failures
+                .main_cause()
+                .map(|(cause, count)| (cause.to_owned(), count)),
         }
     }
 }

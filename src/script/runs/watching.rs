@@ -2,14 +2,14 @@
 //! type between two of them.
 
 use super::changing;
-use super::identification::Identification;
+use super::identification::{Identification, Shown};
 use super::interaction::reason;
 use super::view::{Drawn, Fitted, Progress, Spread, View};
 use crate::Session;
 use crate::builtins::Failure;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
-use crate::identify::{Compared, Quantity, Recorder, Study};
+use crate::identify::{Compared, Quantity, ScriptSearch, Study};
 use std::ops::ControlFlow;
 
 const HELP: &str = "\
@@ -21,30 +21,42 @@ const PROMPT: &str = "> ";
 impl Session {
     /// How far the run is: the generations seen, of as many as the loop that the script is in has
     /// iterations.
-    pub(crate) fn show_run(&mut self, study: &Study, genomes: &Genomes) {
+    pub(crate) fn show_run(&mut self, (study, x): (&Study, &[f64]), genomes: &Genomes) {
         let iterations = match self.loop_iteration() {
             Some((_, Some(iterations))) => iterations as u64,
             _ => 0,
         };
         // It is read only, and put back.
         let recorder = std::mem::take(&mut self.extension::<Identification>().recorder);
-        let progress = progress(&recorder, iterations);
-        if self.show_search(progress, &recorder.observed, || drawn(&recorder, study, genomes)) {
-            self.extension::<Identification>().shown =
-                Some((study.clone(), genomes.clone(), iterations));
+        let before = ScriptSearch::default();
+        let search = recorder.search_simulating(study, x).unwrap_or(&before);
+        let mut progress = progress(search, iterations);
+        let pending = recorder.pending_tally().failures;
+        progress.failures += pending.count;
+        if progress.main_cause.is_none() {
+            progress.main_cause =
+                pending.main_cause().map(|(cause, count)| (cause.to_owned(), count));
+        }
+        if self.show_search(progress, &search.observed, || drawn(search, study, genomes)) {
+            self.extension::<Identification>().shown = Some(Shown {
+                study: study.clone(),
+                x: x.to_vec(),
+                genomes: genomes.clone(),
+                generations: iterations,
+            });
         }
         self.extension::<Identification>().recorder = recorder;
     }
 
-    /// The view of the whole run, where the run was viewed: each of the others is drawn before its
+    /// The view of the whole search that was viewed last: each of the others is drawn before its
     /// generation is rated.
-    pub(super) fn show_end(&mut self, recorder: &Recorder) {
-        let Some((study, genomes, total)) = self.extension::<Identification>().shown.take() else {
-            return;
-        };
-        let drawn = drawn(recorder, &study, &genomes);
-        let view = View::of(progress(recorder, total), &recorder.observed, drawn);
-        self.world.show_view(&view);
+    pub(super) fn show_end(&mut self, searches: &[ScriptSearch]) {
+        let Some(shown) = self.extension::<Identification>().shown.take() else { return };
+        let is_shown = |search: &&ScriptSearch| search.simulates(&shown.study, &shown.x);
+        let Some(search) = searches.iter().rev().find(is_shown) else { return };
+        let drawn = drawn(search, &shown.study, &shown.genomes);
+        let progress = progress(search, shown.generations);
+        self.world.show_view(&View::of(progress, &search.observed, drawn));
     }
 
     /// Executes what the user types where he asks for a pause, among the variables of the script;
@@ -81,27 +93,25 @@ impl Session {
     fn typed(&mut self, line: &str) -> Result<(), Diagnostic> {
         let script = changing::parsed(self, "typed during a pause", line)?;
         self.change(&script, true)?;
-        let recorder = &mut self.extension::<Identification>().recorder;
-        let generation = recorder.observed.history.generations.len() + 1;
-        recorder.changes.push((generation, line.trim().to_owned()));
+        self.extension::<Identification>().recorder.changed(line.trim());
         Ok(())
     }
 }
 
 /// How far a run is, of so many generations; of an unknown number where there have been more, as with a loop
 /// around several runs.
-fn progress(recorder: &Recorder, total: u64) -> Progress {
-    let observed = &recorder.observed;
+fn progress(search: &ScriptSearch, total: u64) -> Progress {
+    let observed = &search.observed;
     let generations = observed.generations();
     let total = if generations > total { 0 } else { total };
-    Progress::of(observed, recorder.counted(), [generations, total])
+    Progress::of(observed, search.counted(), [generations, total])
 }
 
-fn drawn(recorder: &Recorder, study: &Study, genomes: &Genomes) -> Drawn {
-    let best = recorder.best();
+fn drawn(search: &ScriptSearch, study: &Study, genomes: &Genomes) -> Drawn {
+    let best = search.best();
     let spread = |(k, quantity): (usize, &Quantity)| {
         let genes: Vec<f64> = genomes.rows().map(|genome| genome[k]).collect();
-        let known = recorder.ranges.as_ref();
+        let known = search.ranges.as_ref();
         let ends = known.and_then(|(low, high)| Some([*low.get(k)?, *high.get(k)?]));
         let [low, high] = ends.unwrap_or_else(|| ends_of(&genes));
         let fraction = |value: &f64| ((value - low) / (high - low)).clamp(0.0, 1.0);

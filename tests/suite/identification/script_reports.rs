@@ -142,3 +142,111 @@ fn the_history_has_the_parameters_of_its_objectives() {
     let ended = bests[bests.len() - 1];
     assert_eq!(probe.contains(" and ended at "), ended > least, "{probe}");
 }
+
+/// Parameters of the reports of a run: the first one's, and those of the others in their folders.
+fn reported(session: &Session, name: &str) -> (serde_json::Value, [f64; 2]) {
+    let found: serde_json::Value = serde_json::from_str(&written(session, name)).unwrap();
+    let value = |k: usize| found["parameters"][k]["value"].as_f64().unwrap();
+    let values = [value(0), value(1)];
+    (found, values)
+}
+
+fn near(values: [f64; 2], expected: [f64; 2]) -> bool {
+    values.iter().zip(expected).all(|(value, expected)| (value / expected - 1.0).abs() < 2e-3)
+}
+
+/// Least squares by SciPy (`curve_fit`) of the two series: a = 0.99966, k = 1.0178 and a = 2.0149,
+/// k = 0.50489. The second fits worse: its individuals are worse than all of the first.
+#[test]
+fn each_set_of_data_of_a_script_has_a_report() {
+    let one = search("Lo = {0.5,0.1}; Hi = {3,2};\n", "Pop", 1);
+    let (declared, rest) = one.split_once("Yexp = ").unwrap();
+    let (_, rest) = rest.split_once('\n').unwrap();
+    let script = format!(
+        "{declared}for f in 1:2 loop\nYexp := if f == 1 then {{1.0,0.36,0.13,0.05,0.02}} else \
+         {{2.02,1.2,0.75,0.43,0.28}};\n{rest}end for;\n"
+    );
+    let run = run(&script);
+    assert_eq!(run.errors, "");
+    let expected = [("result.json", [0.99966, 1.0178]), ("run-2/result.json", [2.0149, 0.50489])];
+    for (number, (name, expected)) in expected.into_iter().enumerate() {
+        let (found, values) = reported(&run.session, name);
+        assert!(near(values, expected), "{name}: {values:?}");
+        assert_eq!((&found["generations"], &found["evaluations"]), (&12.into(), &144.into()));
+        assert_eq!(found["seed"], serde_json::json!(vec![12345.0; 6]));
+        let title = format!("Identified parameters of M, search {} of 2", number + 1);
+        assert_eq!(found["title"], title);
+    }
+}
+
+/// A file with a model that the script writes anew: two models of one name, whose values are not those
+/// of one search.
+#[test]
+fn a_model_that_was_changed_is_searched_anew() {
+    let model = |equation: &str| {
+        format!(
+            "Modelica.Utilities.Streams.print(\"model W parameter Real a = 1; parameter Real k = 1; \
+             output Real y = {equation}; end W;\", \"W.mo\");\n"
+        )
+    };
+    let eval = "F = Fit(Eval(\"W.mo\", \"W\", {0,1,2,3}, [2.0,0.5; 1.9,0.6; 2.1,0.4], {\"a\",\"k\"}, \
+                \"time\", \"y\"), {2.0,1.21,0.74,0.44});\n";
+    let [one, other] = ["a*exp(-k*time)", "a*exp(-2*k*time)"].map(model);
+    let remove = "Modelica.Utilities.Files.remove(\"W.mo\");\n";
+    let run = run(&[one.as_str(), eval, remove, &other, eval].concat());
+    let [(_, first), (_, second)] =
+        ["result.json", "run-2/result.json"].map(|name| reported(&run.session, name));
+    assert!((first[1] / second[1] / 2.0 - 1.0).abs() < 1e-3, "{first:?} {second:?}");
+}
+
+#[test]
+fn an_error_belongs_to_the_search_that_it_ended() {
+    let eval = |data: &str| {
+        format!(
+            "F = Fit(Eval(\"\", \"M\", Xexp, [2.0,0.5; 1.9,0.6; 2.1,0.4; 1.0,0.9], {{\"a\",\"k\"}}, \
+             \"time\", \"y\"), {data});\n"
+        )
+    };
+    let [one, other] = ["{2.02,1.2,0.75,0.43,0.28}", "{1.0,0.36,0.13,0.05,0.02}"].map(eval);
+    let run = run(&format!("{DECAY}{one}{other}x = unknown_name;\n"));
+    let (first, _) = reported(&run.session, "result.json");
+    let (second, _) = reported(&run.session, "run-2/result.json");
+    assert_eq!(
+        (&first["script"]["error"], second["script"]["error"].is_object()),
+        (&().into(), true)
+    );
+    assert!(
+        first["stop"].as_str().unwrap().starts_with("the search has ended"),
+        "{}",
+        first["stop"]
+    );
+}
+
+/// Other data in each evaluation: the last of them are reported, and that there are more is said.
+#[test]
+fn of_many_searches_some_are_reported_and_the_others_named() {
+    let script = format!(
+        "{DECAY}for f in 1:23 loop\n  F := Fit(Eval(\"\", \"M\", Xexp, [1.0,0.5; 1.1,0.4; 0.9,0.6], \
+         {{\"a\",\"k\"}}, \"time\", \"y\"), (1 + f/100)*{{1.01,0.6,0.37,0.22,0.14}});\nend for;\n"
+    );
+    let run = run(&script);
+    assert!(run.errors.contains("compared 23 different models or sets"), "{}", run.errors);
+    let titles = ["result.json", "run-20/result.json"]
+        .map(|name| reported(&run.session, name).0["title"].clone());
+    assert_eq!(titles[0], "Identified parameters of M, search 4 of 23");
+    assert_eq!(titles[1], "Identified parameters of M, search 23 of 23");
+}
+
+/// All individuals of the second model fail, those of the first do not.
+#[test]
+fn a_search_without_a_result_is_named() {
+    let script = format!(
+        "{DECAY}model L parameter Real a = 1; parameter Real k = 1; output Real y = log(-1 - a^2); end L;\n\
+         P = [2.0,0.5; 1.9,0.6; 2.1,0.4];\n\
+         for name in {{\"M\", \"L\"}} loop\n  F := Fit(Eval(\"\", name, Xexp, P, {{\"a\",\"k\"}}, \"time\", \"y\"), \
+         {{2.02,1.2,0.75,0.43,0.28}});\n  (Q, G) := Fit_Order(P, F, 3, 2, 1);\nend for;\n"
+    );
+    let run = run(&script);
+    assert!(run.errors.contains("the search of L has no result: none of 3"), "{}", run.errors);
+    assert!(near(reported(&run.session, "result.json").1, [2.0149, 0.50489]));
+}

@@ -13,7 +13,7 @@ pub(super) fn none_simulated(run: &Run, experiments: &[Experiment]) -> Option<Di
     if run.observed.best.is_some() {
         return None;
     }
-    let (cause, count) = run.observed.causes.iter().max_by_key(|cause| cause.1)?;
+    let (cause, count) = run.observed.failures.causes.iter().max_by_key(|cause| cause.1)?;
     let values = run.examples.get(cause)?;
     let (found, time) = diagnosed(experiments, values)?;
     let message = format!(
