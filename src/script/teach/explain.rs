@@ -1,7 +1,7 @@
 //! One or two sentences for each step: what happens and why, with the numbers it uses and the names
 //! of the paper's Table 1.
 
-use super::generation::{Generation, mate};
+use super::generation::{Crossed, Generation, Mating, Origin, mating};
 use super::operation_text;
 use super::scaling::{Scaling, scaling};
 use super::step::Step;
@@ -54,6 +54,7 @@ fn used(walk: &TraceCursor, count: usize) -> String {
     let each = match (own, others) {
         (1, 0) => "It sets the gene".to_owned(),
         (_, 0) => "Each number u sets one gene".to_owned(),
+        (1, _) => "The other number u sets the gene".to_owned(),
         _ => format!("Each of the other {own} numbers u sets one gene"),
     };
     let first = match (others, crossing_points(walk, others)) {
@@ -125,6 +126,9 @@ fn simulate(walk: &TraceCursor) -> String {
     match generation.failures.first() {
         None => shown,
         Some((_, cause)) if individuals == 1 => format!("{shown} It cannot be simulated: {cause}."),
+        Some((k, cause)) if failed == 1 => {
+            format!("{shown} Individual {} cannot be simulated: {cause}.", k + 1)
+        }
         Some((k, cause)) => format!(
             "{shown} {failed} of them cannot be simulated, the first is individual {}: {cause}.",
             k + 1
@@ -165,12 +169,29 @@ fn rate(walk: &TraceCursor) -> String {
 
 fn sort(generation: &Generation) -> String {
     let Some(sorted) = &generation.sorted else { return String::new() };
-    format!(
-        "Fit_Order sorts them by fitness, best first. The best {} (N_Parents) will be parents, \
-         the other {} are discarded (truncation selection).",
-        sorted.parents,
-        generation.len().saturating_sub(sorted.parents)
-    )
+    let (parents, all) = (sorted.parents, generation.len());
+    let chosen = match parents {
+        0 => {
+            return "Fit_Order sorts them by fitness, best first. None becomes a parent \
+                     (N_Parents = 0)."
+                .to_owned();
+        }
+        1 if all <= 1 => "The only one (N_Parents = 1) will be the parent".to_owned(),
+        1 => "The best one (N_Parents = 1) will be the parent".to_owned(),
+        _ if parents >= all => format!("All {all} (N_Parents = {parents}) will be parents"),
+        _ => format!("The best {parents} (N_Parents) will be parents"),
+    };
+    // An elite that is not a parent passes on.
+    let fate = |is: &str| match sorted.elites > parents {
+        true => "will not".to_owned(),
+        false => format!("{is} discarded (truncation selection)"),
+    };
+    let others = match all.saturating_sub(parents) {
+        0 => String::new(),
+        1 => format!(", the other one {}", fate("is")),
+        others => format!(", the other {others} {}", fate("are")),
+    };
+    format!("Fit_Order sorts them by fitness, best first. {chosen}{others}.")
 }
 
 fn elite(generation: &Generation) -> String {
@@ -189,15 +210,55 @@ fn elite(generation: &Generation) -> String {
 
 fn cross(generation: &Generation, rank: usize) -> String {
     let Some(crossed) = &generation.crossed else { return String::new() };
-    let mate = mate(rank, crossed.parents);
+    let Mating { parents, children } = mating(rank, crossed.parents);
+    let [a, b] = parents[..] else {
+        return "The only parent has no partner to exchange genes with: its child is a copy of it."
+            .to_owned();
+    };
     let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
-    let children = if mate < rank { "a child: they" } else { "two children that" };
+    let have = format!("Parents {} and {} (by rank) have", a + 1, b + 1);
+    let is_pair = children.len() == 2;
+    if let Some(what) = whole_genomes(crossed, generation.n_genes) {
+        let copied = if what.all { b } else { a };
+        return match is_pair {
+            true => {
+                format!("{have} two children: {}, so each is a copy of one of them.", what.text)
+            }
+            false => format!("{have} a child: {}, so it is a copy of {}.", what.text, copied + 1),
+        };
+    }
     format!(
-        "Parents {} and {} (by rank) have {children} exchange the genes after gene {} (Cross_Point).",
-        rank + 1,
-        mate + 1,
+        "{have} {} exchange the genes after gene {} (Cross_Point).",
+        if is_pair { "two children that" } else { "a child: they" },
         points.join(" and after gene ")
     )
+}
+
+/// A crossover that exchanges all genes, or none.
+struct Whole {
+    all: bool,
+    text: String,
+}
+
+/// Whether the parents exchange all of their genes or none, and why; `None` where only some.
+fn whole_genomes(crossed: &Crossed, n_genes: usize) -> Option<Whole> {
+    let exchanged = crossed.exchanged(n_genes);
+    let all = exchanged.iter().all(|&one| one);
+    if !all && exchanged.contains(&true) {
+        return None;
+    }
+    let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
+    let given = match points.is_empty() {
+        true => "there is no crossing point".to_owned(),
+        false => format!("Cross_Point = {}", points.join(", ")),
+    };
+    let text = match (all, n_genes) {
+        (true, 1) => format!("they exchange their only gene ({given})"),
+        (true, _) => format!("they exchange all genes ({given})"),
+        (false, 1) => format!("they do not exchange their only gene ({given})"),
+        (false, _) => format!("they exchange no gene ({given})"),
+    };
+    Some(Whole { all, text })
 }
 
 fn mutate(walk: &TraceCursor, row: usize) -> String {
@@ -255,8 +316,8 @@ fn renew(walk: &TraceCursor) -> String {
     let individuals = counted(next.len(), "individual");
     if next.has_parents() {
         return format!(
-            "Elites, children and random individuals form the next generation: {individuals}. The \
-             stop condition is not yet met."
+            "{} the next generation: {individuals}. The stop condition is not yet met.",
+            formed_by(next)
         );
     }
     match next.is_drawn() {
@@ -265,6 +326,34 @@ fn renew(walk: &TraceCursor) -> String {
              none descends from this one."
         ),
         false => format!("The script makes the next generation: {individuals}."),
+    }
+}
+
+/// Of which individuals a generation consists, with the verb.
+fn formed_by(next: &Generation) -> String {
+    let kinds = [
+        ("elite", "elites"),
+        ("child", "children"),
+        ("random individual", "random individuals"),
+        ("individual of the script", "individuals of the script"),
+    ];
+    let mut counts = [0_usize; 4];
+    for origin in &next.origins {
+        counts[match origin {
+            Origin::Elite { .. } => 0,
+            Origin::Child { .. } => 1,
+            Origin::Random => 2,
+            Origin::Script => 3,
+        }] += 1;
+    }
+    let present = kinds.iter().zip(counts).filter(|(_, count)| *count > 0);
+    let named = present
+        .map(|((one, many), count)| format!("{count} {}", if count == 1 { one } else { many }));
+    let mut named: Vec<String> = named.collect();
+    let verb = if next.origins.len() == 1 { "forms" } else { "form" };
+    match (named.pop(), named.is_empty()) {
+        (Some(last), false) => format!("{} and {last} {verb}", named.join(", ")),
+        (last, _) => format!("{} {verb}", last.unwrap_or_default()),
     }
 }
 

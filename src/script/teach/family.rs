@@ -62,12 +62,14 @@ fn place(family: &mut Vec<Member>, new: Member) -> Option<usize> {
     fits.then(|| family.push(new)).map(|()| family.len() - 1)
 }
 
-/// Where both parents came into being.
+/// Where the parents came into being.
 fn parents(generations: &[Generation], member: &Member) -> Vec<(usize, usize)> {
     let origin = generations[member.generation].origins.get(member.number);
     match (origin, member.generation.checked_sub(1)) {
         (Some(&Origin::Child { parent, mate, .. }), Some(before)) => {
-            vec![born(generations, before, parent), born(generations, before, mate)]
+            // A single parent is named once.
+            let both = [parent, mate].into_iter().take(if mate == parent { 1 } else { 2 });
+            both.map(|number| born(generations, before, number)).collect()
         }
         _ => Vec::new(),
     }

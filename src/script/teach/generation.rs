@@ -64,6 +64,15 @@ pub struct Crossed {
     pub rows: Vec<f64>,
 }
 
+impl Crossed {
+    /// Which of `n_genes` genes the parents exchange: after an even number of points they are back
+    /// in place.
+    pub(crate) fn exchanged(&self, n_genes: usize) -> Vec<bool> {
+        let points = |j: usize| self.points.iter().filter(|&&point| point <= j).count();
+        (0..n_genes).map(|j| points(j) % 2 == 1).collect()
+    }
+}
+
 /// The order of a generation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sorted {
@@ -299,5 +308,23 @@ pub(crate) fn mate(rank: usize, parents: usize) -> usize {
         1 => rank - 1,
         _ if rank + 1 < parents => rank + 1,
         _ => 0,
+    }
+}
+
+/// Those who take part in one crossover, by rank from 0.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Mating {
+    /// Two parents, or a single one without a partner.
+    pub(crate) parents: Vec<usize>,
+    /// Two children; one where the last parent mates with the first, or where there is one parent.
+    pub(crate) children: Vec<usize>,
+}
+
+/// The crossover of the parent of this rank, the first of its pair.
+pub(crate) fn mating(rank: usize, parents: usize) -> Mating {
+    match mate(rank, parents) {
+        mate if mate == rank => Mating { parents: vec![rank], children: vec![rank] },
+        mate if mate < rank => Mating { parents: vec![rank, mate], children: vec![rank] },
+        mate => Mating { parents: vec![rank, mate], children: vec![rank, mate] },
     }
 }

@@ -49,7 +49,8 @@ pub(crate) fn table(operation: &Operation, row: usize, names: &[String]) -> Tabl
         }
         Action::Crossover { parents, children } => {
             let rows = family(operation, row, parents, children);
-            Table { columns: genes().collect(), rows, legend: CHILDREN }
+            let legend = if operation.count(parents) > 1 { CHILDREN } else { "" };
+            Table { columns: genes().collect(), rows, legend }
         }
         Action::Mutation { before, after, .. } => {
             let rows = mutated(operation.row(before, row), operation.row(after, row));
@@ -106,10 +107,15 @@ fn family(operation: &Operation, row: usize, parents: &[f64], children: &[f64]) 
     let child = |k: usize| {
         let genes = operation.row(children, k);
         let marks = inherited(genes, a, b);
-        let cells = genes.iter().copied().zip(marks).collect();
+        let cells = match mate == row {
+            true => unmarked(genes),
+            false => genes.iter().copied().zip(marks).collect(),
+        };
         Row { name: format!("child {}", k + 1), cells, note: String::new() }
     };
-    let mut rows = vec![parent('a', row, a), parent('b', mate, b), child(row)];
+    let mut rows = vec![parent('a', row, a)];
+    rows.extend((mate != row).then(|| parent('b', mate, b)));
+    rows.push(child(row));
     rows.extend((mate > row).then(|| child(mate)));
     rows
 }

@@ -115,8 +115,15 @@ fn crossover(operation: &Operation, row: usize, parents: &[f64], children: &[f64
             format!("rows {} (a) and {} (b) have two children", row + 1, mate + 1),
             vec![row, mate],
         ),
-        // A single parent mates with itself.
-        std::cmp::Ordering::Equal => ("row 1, the only one, has a child".to_owned(), vec![row]),
+        // A single parent mates with itself: a child without changes is its copy.
+        std::cmp::Ordering::Equal => {
+            let marks = inherited(operation.row(children, row), a, b);
+            let child = match marks.iter().filter(|&&mark| mark == '*').count() {
+                0 => "is a copy of it".to_owned(),
+                new => format!("has {} with a value of its own", counted(new, "gene")),
+            };
+            return format!("is given 1 parent: row 1 has a child, which {child}.");
+        }
         std::cmp::Ordering::Less => (
             format!("row {} (a), the last, mates with row 1 (b) and has a child", row + 1),
             vec![row],

@@ -90,6 +90,9 @@ fn lines(svg: &mut Svg, order: &[usize], next: &Generation, high: usize) {
     for (row, origin) in next.origins.iter().enumerate().take(MOST) {
         let (from, styles) = match origin {
             Origin::Elite { from } => (vec![*from], [("#000000", "none"); 2]),
+            Origin::Child { parent, mate, .. } if mate == parent => {
+                (vec![*parent], [("#0b5cad", "none"); 2])
+            }
             Origin::Child { parent, mate, .. } => {
                 (vec![*parent, *mate], [("#0b5cad", "none"), ("#b35900", "5 3")])
             }

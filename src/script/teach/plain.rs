@@ -224,31 +224,36 @@ fn completed(walk: &TraceCursor, row: usize) -> String {
 fn origin(generation: &Generation, k: usize) -> String {
     match generation.origins.get(k) {
         Some(Origin::Elite { from }) => format!("elite, was {}", from + 1),
-        Some(Origin::Child { parent, mate, mutated }) if mutated.is_empty() => {
-            format!("child of {} and {}", parent + 1, mate + 1)
-        }
         Some(Origin::Child { parent, mate, mutated }) => {
-            format!("child of {} and {}, {} mutated", parent + 1, mate + 1, mutated.len())
+            let both = match mate == parent {
+                true => String::new(),
+                false => format!(" and {}", mate + 1),
+            };
+            let changed = match mutated.len() {
+                0 => String::new(),
+                count => format!(", {count} mutated"),
+            };
+            format!("child of {}{both}{changed}", parent + 1)
         }
         Some(Origin::Random) => "random".to_owned(),
         Some(Origin::Script) | None => "set by the script".to_owned(),
     }
 }
 
-/// Two parents above their children, `|` at the crossing points.
+/// The parents above their children, `|` at the crossing points.
 fn family(walk: &TraceCursor, rank: usize) -> String {
     let generation = walk.generation();
     let Some(crossed) = &generation.crossed else { return String::new() };
-    let mate = super::generation::mate(rank, crossed.parents);
+    let mating = super::generation::mating(rank, crossed.parents);
     let order = generation.order();
     let mut text = heading(walk, &["", ""], "");
-    for parent in [rank, mate] {
+    for parent in mating.parents {
         if let Some(&k) = order.get(parent) {
             let genes = divided(generation.genome(k), &crossed.points);
             let _ = writeln!(text, "rank {:>3}        {genes}", parent + 1);
         }
     }
-    for child in [rank, mate].into_iter().filter(|&child| child >= rank) {
+    for child in mating.children {
         let row = crossed.elites + child;
         if let Some(genes) = crossed.rows.chunks_exact(generation.n_genes).nth(row) {
             let genes = divided(genes, &crossed.points);

@@ -5,7 +5,7 @@
 //! gets from whom, whether a gene mutates. An answer that is not one is asked for again.
 
 use super::explain::short;
-use super::generation::{Generation, mate};
+use super::generation::{Generation, Mating, mating};
 use super::step::Step;
 use super::walk::TraceCursor;
 use serde::Serialize;
@@ -94,8 +94,9 @@ impl Question {
             Answer::Individuals { right, of } => {
                 let named = numbers(&answer).filter(|n| n.iter().all(|n| (1..=*of).contains(n)));
                 let named = named.filter(|named| named.len() == right.len());
-                let named = named.ok_or_else(|| {
-                    format!("Enter {} different numbers from 1 to {of}.", right.len())
+                let named = named.ok_or_else(|| match right.len() {
+                    1 => format!("Enter one number from 1 to {of}."),
+                    count => format!("Enter {count} different numbers from 1 to {of}."),
                 })?;
                 let names: Vec<String> = right.iter().map(usize::to_string).collect();
                 (named == *right, names.join(" "))
@@ -148,13 +149,20 @@ fn selection(walk: &TraceCursor) -> Option<Question> {
     (generation.fitness.len() == generation.len()).then_some(())?;
     let order = generation.order();
     let parents = order.get(..sorted.parents)?;
+    // Where all or none become parents there is nothing to find out.
+    (!parents.is_empty() && parents.len() < order.len()).then_some(())?;
     if parents.len() <= MOST_NAMED {
         let mut right: Vec<usize> = parents.iter().map(|k| k + 1).collect();
         right.sort_unstable();
-        let text = format!(
-            "Which {} individuals become parents? Enter their numbers (smaller fitness is better):",
-            parents.len()
-        );
+        let text = match parents.len() {
+            1 => "Which individual becomes the parent? Enter its number (smaller fitness is \
+                  better):"
+                .to_owned(),
+            count => format!(
+                "Which {count} individuals become parents? Enter their numbers (smaller fitness is \
+                 better):"
+            ),
+        };
         let answer = Answer::Individuals { right, of: generation.len() };
         return Some(Question { text, answer });
     }
@@ -175,10 +183,10 @@ fn selection(walk: &TraceCursor) -> Option<Question> {
 fn pair(generation: &Generation) -> Option<Question> {
     let crossed = generation.crossed.as_ref()?;
     let order = generation.order();
-    let (a, b) = (*order.first()?, *order.get(mate(0, crossed.parents))?);
     if crossed.parents < 3 {
         return heritage(generation, 0);
     }
+    let (a, b) = (*order.first()?, *order.get(1)?);
     let text = format!(
         "Individual {} has rank 1. Parents of neighbouring ranks mate. Enter the number of the \
          individual that it mates with:",
@@ -191,7 +199,9 @@ fn pair(generation: &Generation) -> Option<Question> {
 fn cut(generation: &Generation) -> Option<Question> {
     let crossed = generation.crossed.as_ref()?;
     let order = generation.order();
-    let (a, b) = (*order.get(2)?, *order.get(mate(2, crossed.parents))?);
+    let Mating { parents, children } = mating(2, crossed.parents);
+    let [rank_a, rank_b] = parents[..] else { return None };
+    let (a, b) = (*order.get(rank_a)?, *order.get(rank_b)?);
     let n = generation.n_genes;
     // Two genes can be cut at one place only.
     if n < 3 {
@@ -204,10 +214,13 @@ fn cut(generation: &Generation) -> Option<Question> {
     (point > 0 && point < n && a[point - 1] != b[point - 1] && a[point] != b[point])
         .then_some(())?;
     let text = format!(
-        "Rank 3 has the genes  {}\nRank 4 has the genes  {}\nTheir first child has    {}\nAfter \
+        "Rank {} has the genes  {}\nRank {} has the genes  {}\n{}    {}\nAfter \
          which gene were they cut? Enter its number:",
+        rank_a + 1,
         row(a),
+        rank_b + 1,
         row(b),
+        if children.len() == 2 { "Their first child has" } else { "Their child has      " },
         row(child)
     );
     Some(Question { text, answer: Answer::Number { right: point, of: n - 1 } })
@@ -222,25 +235,26 @@ fn row(genes: &[f64]) -> String {
 fn heritage(generation: &Generation, rank: usize) -> Option<Question> {
     let crossed = generation.crossed.as_ref()?;
     let order = generation.order();
-    let other = mate(rank, crossed.parents);
+    let Mating { parents, children } = mating(rank, crossed.parents);
+    let [_, other] = parents[..] else { return None };
     let (a, b) = (*order.get(rank)?, *order.get(other)?);
-    let letter = |j: usize| {
-        let swaps = crossed.points.iter().filter(|&&point| point <= j).count();
-        if swaps % 2 == 0 { 'a' } else { 'b' }
-    };
+    let exchanged = crossed.exchanged(generation.n_genes);
+    // A child that has all genes from one parent is its copy, and no question.
+    (exchanged.contains(&true) && exchanged.contains(&false)).then_some(())?;
     let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
     let text = format!(
         "Parent a, rank {}, has the genes  {}\nParent b, rank {}, has the genes  {}\nThey exchange \
-         the genes after gene {}. From which parent is each gene of the first child? One letter \
+         the genes after gene {}. From which parent is each gene of the {}? One letter \
          per gene, such as {}:",
         rank + 1,
         row(generation.genome(a)),
         other + 1,
         row(generation.genome(b)),
         points.join(" and after gene "),
+        if children.len() == 2 { "first child" } else { "child" },
         "ab".repeat(generation.n_genes.div_ceil(2))[..generation.n_genes].to_owned()
     );
-    let right = (0..generation.n_genes).map(letter).collect();
+    let right = exchanged.iter().map(|&other| if other { 'b' } else { 'a' }).collect();
     Some(Question { text, answer: Answer::Letters { right } })
 }
 

@@ -113,6 +113,167 @@ fn a_crossover_alone_is_watched() {
     }
 }
 
+/// Two generations of a size that stands before it.
+const SMALL: &str = include_str!("../../teach/small.mos");
+
+/// A small run, and what its steps say.
+struct SmallRun {
+    population: usize,
+    parents: usize,
+    elites: usize,
+    genes: usize,
+    points: &'static str,
+    says: &'static [&'static str],
+}
+
+/// What `Cross` makes of few parents and genes, and what becomes of the others, is said as it is.
+#[test]
+fn small_runs_are_described_as_they_are() {
+    let run = |population, parents, elites, genes, points, says| SmallRun {
+        population,
+        parents,
+        elites,
+        genes,
+        points,
+        says,
+    };
+    let table: [SmallRun; 9] = [
+        run(
+            2,
+            1,
+            1,
+            1,
+            "{0}",
+            &[
+                "The best one (N_Parents = 1) will be the parent, the other one is discarded",
+                "The only parent has no partner to exchange genes with: its child is a copy of it.",
+                "1 elite and 1 child form the next generation: 2 individuals.",
+            ],
+        ),
+        run(
+            1,
+            1,
+            0,
+            2,
+            "{1}",
+            &[
+                "The only one (N_Parents = 1) will be the parent.",
+                "its child is a copy of it",
+                "1 child forms the next generation: 1 individual.",
+            ],
+        ),
+        run(
+            3,
+            1,
+            0,
+            2,
+            "{1}",
+            &[
+                "will be the parent, the other 2 are discarded",
+                "1 child and 2 random individuals form the next generation: 3 individuals.",
+            ],
+        ),
+        run(
+            3,
+            1,
+            2,
+            1,
+            "{0}",
+            &[
+                "will be the parent, the other 2 will not.",
+                "The best 2 individuals (N_Elitism = 2) survive unchanged",
+                "2 elites and 1 child form the next generation",
+            ],
+        ),
+        run(
+            2,
+            2,
+            0,
+            1,
+            "{0}",
+            &[
+                "All 2 (N_Parents = 2) will be parents.",
+                "Parents 1 and 2 (by rank) have two children: they exchange their only gene \
+             (Cross_Point = 0), so each is a copy of one of them.",
+                "2 children form the next generation",
+            ],
+        ),
+        run(
+            3,
+            2,
+            1,
+            2,
+            "{2}",
+            &[
+                "two children: they exchange no gene (Cross_Point = 2), so each is a copy",
+                "1 elite and 2 children form the next generation",
+            ],
+        ),
+        run(
+            4,
+            3,
+            1,
+            2,
+            "{0}",
+            &[
+                "The best 3 (N_Parents) will be parents, the other one is discarded",
+                "Parents 1 and 2 (by rank) have two children: they exchange all genes (Cross_Point = 0)",
+                "Parents 3 and 1 (by rank) have a child: they exchange all genes (Cross_Point = 0), so \
+             it is a copy of 1.",
+            ],
+        ),
+        run(
+            4,
+            3,
+            0,
+            2,
+            "{1, 1}",
+            &[
+                "Parents 3 and 1 (by rank) have a child: they exchange no gene (Cross_Point = 1, 1), so \
+             it is a copy of 3.",
+            ],
+        ),
+        run(
+            4,
+            3,
+            0,
+            2,
+            "{1}",
+            &[
+                "Parents 1 and 2 (by rank) have two children that exchange the genes after gene 1",
+                "Parents 3 and 1 (by rank) have a child: they exchange the genes after gene 1",
+            ],
+        ),
+    ];
+    for size in &table {
+        let SmallRun { population, parents, elites, genes, points, .. } = size;
+        let script = format!(
+            "N_Population = {population}; N_Parents = {parents}; N_Elitism = {elites}; \
+             N_Genes = {genes}; Cross_Point = {points};\n{SMALL}"
+        );
+        let here = folder(&[("small.mos", &script)]);
+        let (code, out, errors) = gapi(&here, &["teach", "small.mos", "--count", "2"]);
+        assert_eq!(code, 0, "{errors}\n{script}");
+        let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in size.says {
+            assert!(words.contains(part), "`{part}` is missing:\n{out}");
+        }
+        for part in
+            ["1 individuals", "1 are", "Parents 1 and 1", "after gene 0", "child of 1 and 1"]
+        {
+            assert!(!words.contains(part), "`{part}` in\n{out}");
+        }
+        // `Cross` makes one child for each parent.
+        let first = out.split("Generation 2").next().unwrap_or_default();
+        let children = first.lines().filter(|line| line.starts_with("child ")).count();
+        assert_eq!(children, size.parents, "{out}");
+        // A lesson with questions asks nothing that there is not.
+        let (code, out, errors) = gapi(&here, &["teach", "small.mos", "--quiz"]);
+        assert_eq!(code, 0, "{errors}");
+        assert!(!out.contains("Which 1 ") && !out.contains("after gene 0"), "{out}");
+    }
+}
+
 /// What is called on nobody is told all the same, and an operator that does not exist is an error.
 #[test]
 fn operators_on_nobody() {
@@ -136,7 +297,7 @@ fn operators_on_nobody() {
         "Op_Mutation with `uniform` is given no individuals and returns none.",
         "returns 0 parents.",
         "Call 5, step 1 of 1: survivor selection",
-        "row 1, the only one, has a",
+        "is given 1 parent: row 1 has a child, which is a\ncopy of it.",
     ] {
         assert!(out.contains(part), "`{part}` is missing:\n{out}");
     }

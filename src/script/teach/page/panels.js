@@ -35,7 +35,7 @@ function cameAs(origin) {
   if (origin.elite !== undefined) return "elite, was " + (origin.elite + 1);
   const changed = origin.mutated.length ? ", mutated in " + origin.mutated.map(name).join(", ") : "";
   if (origin.was !== undefined) return "was " + (origin.was + 1) + changed;
-  return "child of " + (origin.of[0] + 1) + " and " + (origin.of[1] + 1) + changed;
+  return "child of " + [...new Set(origin.of)].map(k => k + 1).join(" and ") + changed;
 }
 
 // Units of a drawing across: about as many as it has pixels, so that its text stays readable; pixels
@@ -171,7 +171,7 @@ function offspring(step, generation) {
 // What stands in this row of the next generation after completion.
 function born(next, row) {
   const origin = next.origins[row] || {};
-  const from = origin.of || (origin.elite !== undefined ? [origin.elite] : []);
+  const from = origin.of ? [...new Set(origin.of)] : (origin.elite !== undefined ? [origin.elite] : []);
   return { number: row, values: genome(next.genes, next.n, row), from, text: describe(next, row, { title: "initial population" }), crown: origin.elite !== undefined, changed: origin.mutated || [] };
 }
 // What stands in this row after crossover, or after mutation.
@@ -180,7 +180,7 @@ function child(generation, row, mutated) {
   const values = genome(mutated ? generation.after : generation.children, n, row);
   const crown = rank < 0;
   const alone = !generation.points;
-  const from = crown || alone ? [order[row]] : [order[rank], order[mate(rank, generation.parents)]];
+  const from = crown || alone ? [order[row]] : [...new Set([order[rank], order[mate(rank, generation.parents)]])];
   const u = mutated && !crown ? genome(generation.u, n, row) : [];
   const changed = u.map((value, j) => value < generation.factor ? j : -1).filter(j => j >= 0);
   const origin = crown ? { elite: from[0] } : alone ? { was: from[0], mutated: changed } : { of: from, mutated: changed };
@@ -383,12 +383,13 @@ function crossover(step, generation) {
   const light = ["var(--first)", "var(--second)"];
   const parent = rank => genome(generation.genes, n, generation.order[rank]);
   const none = () => false;
-  const pair = other > step.of;
+  const pair = other > step.of, alone = other === step.of;
   const rows = [
     genes(parent(step.of), 24, "rank " + (step.of + 1), () => light[0], none),
-    genes(parent(other), 60, "rank " + (other + 1), () => light[1], none),
-    genes(genome(generation.children, n, elites + step.of), 116, "child " + (step.of + 1), j => light[second(j)], none),
+    genes(genome(generation.children, n, elites + step.of), 116, "child " + (step.of + 1), j => light[alone ? 0 : second(j)], none),
   ];
+  if (alone) return { rows, height: 156 };
+  rows.push(genes(parent(other), 60, "rank " + (other + 1), () => light[1], none));
   if (pair) rows.push(genes(genome(generation.children, n, elites + other), 152, "child " + (other + 1), j => light[1 - second(j)], none));
   for (const point of generation.points) {
     const x = 90 + point * cell - 1;

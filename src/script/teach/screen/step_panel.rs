@@ -3,7 +3,7 @@
 use super::Screen;
 use crate::ga::has_failed;
 use crate::teach::explain::short;
-use crate::teach::generation::{Generation, Origin, mate};
+use crate::teach::generation::{Generation, Mating, Origin, mating};
 use crate::teach::operation::OperationKind;
 use crate::teach::operation_table::{self, Row, Table};
 use crate::teach::step::{Phase, Step};
@@ -155,40 +155,39 @@ fn gene_name(screen: &Screen, j: usize) -> String {
 fn crossover(screen: &Screen, rank: usize) -> Vec<Line<'static>> {
     let generation = screen.walk.generation();
     let Some(crossed) = &generation.crossed else { return Vec::new() };
-    let mate = mate(rank, crossed.parents);
+    let Mating { parents, children } = mating(rank, crossed.parents);
     let order = generation.order();
-    let (Some(&a), Some(&b)) = (order.get(rank), order.get(mate)) else { return Vec::new() };
+    let at = |rank: &usize| order.get(*rank).copied();
+    let Some(sources) = parents.iter().map(at).collect::<Option<Vec<usize>>>() else {
+        return Vec::new();
+    };
     let n = generation.n_genes;
+    let exchanged = crossed.exchanged(n);
     let styles = [screen.styled(Color::Cyan), screen.styled(Color::Yellow)];
     let marks = ['a', 'b'];
-    let second = mate > rank;
-    let mut heading = vec![
-        Span::raw(format!("{:<7}", "")),
-        Span::styled(format!("{:>8}", format!("a:rank{}", rank + 1)), styles[0]),
-        Span::styled(format!("{:>8}", format!("b:rank{}", mate + 1)), styles[1]),
-        Span::raw(format!("{:>8}", format!("child{}", rank + 1))),
-    ];
-    if second {
-        heading.push(Span::raw(format!("{:>8}", format!("child{}", mate + 1))));
-    }
+    let mut heading = vec![Span::raw(format!("{:<7}", ""))];
+    heading.extend(parents.iter().enumerate().map(|(from, rank)| {
+        let name = format!("{}:rank{}", marks[from], rank + 1);
+        Span::styled(format!("{name:>8}"), styles[from])
+    }));
+    let named = |child: &usize| Span::raw(format!("{:>8}", format!("child{}", child + 1)));
+    heading.extend(children.iter().map(named));
     let mut lines = vec![Line::from(heading)];
     let child = |row: usize, j: usize| crossed.rows.get((crossed.elites + row) * n + j).copied();
-    for j in 0..n {
-        if j > 0 && crossed.points.contains(&j) {
+    for (j, &is_exchanged) in exchanged.iter().enumerate() {
+        if j > 0 && parents.len() > 1 && crossed.points.contains(&j) {
             lines.push(Line::from("- - - - - - exchanged after this gene - - -"));
         }
-        let swapped = crossed.points.iter().filter(|&&point| point <= j).count() % 2;
+        let swapped = usize::from(is_exchanged && parents.len() > 1);
         let cell = |value: f64, from: usize| {
             Span::styled(format!("{:>7}{}", narrow(value), marks[from]), styles[from])
         };
-        let mut spans = vec![
-            Span::raw(format!("{:<7}", gene_name(screen, j))),
-            cell(generation.genome(a)[j], 0),
-            cell(generation.genome(b)[j], 1),
-        ];
-        spans.extend(child(rank, j).map(|value| cell(value, swapped)));
-        if second {
-            spans.extend(child(mate, j).map(|value| cell(value, 1 - swapped)));
+        let mut spans = vec![Span::raw(format!("{:<7}", gene_name(screen, j)))];
+        let own = sources.iter().enumerate();
+        spans.extend(own.map(|(from, &k)| cell(generation.genome(k)[j], from)));
+        for (which, &row) in children.iter().enumerate() {
+            let from = if which == 0 { swapped } else { 1 - swapped };
+            spans.extend(child(row, j).map(|value| cell(value, from)));
         }
         lines.push(Line::from(spans));
     }
