@@ -41,6 +41,7 @@ mod hangup;
 mod help;
 mod identify;
 mod import;
+mod interrupts;
 mod journal;
 mod launcher;
 mod lesson;

@@ -25,7 +25,7 @@ Examples:
   gapi new curve.csv --model models --class CaseStudies.PolarizationCurve --output fit.toml
   gapi new measured.csv --model Pump.fmu
 
-Exit code: 0 if the file was written, 1 on an error, 2 for an invalid command line.")]
+Exit code: 0 if the file was written, 1 on an error, 2 for an invalid command line, 130 if interrupted.")]
 pub(super) struct NewArgs {
     /// The measured data (CSV, text file of an instrument, MAT, XLSX)
     #[arg(value_hint = ValueHint::FilePath)]
@@ -60,6 +60,10 @@ pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
     let options = options(arguments, &output);
     let drafted =
         draft(&mut session, &options).and_then(|draft| answered(&mut session, options, draft));
+    if session.is_interrupted() {
+        // The question was not answered: a file with a guess is not what the user asked for.
+        return session::stopped(&mut session);
+    }
     match drafted.and_then(|draft| write(&mut session, &output, draft)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(errors) => session::failed(&mut session, errors),

@@ -1,6 +1,7 @@
 //! `gapi teach SCRIPT`: a run of the genetic algorithm, step by step.
 
 use super::disk;
+use super::interrupts::{self, Answer, Caught};
 use super::options::{Global, at_least_one};
 use super::output::{RESULTS, latest_of, shown};
 use super::teach_run::{Again, Change, Recording, RunArgs, Running, Trouble, output, read};
@@ -262,8 +263,7 @@ fn walk(trace: Trace, arguments: &TeachArgs) -> Result<TraceCursor, Trouble> {
 fn show(trace: Trace, arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let walk = walk(trace, arguments)?;
     if !is_on_screen(arguments) {
-        print(walk, arguments);
-        return Ok(());
+        return print(walk, arguments);
     }
     on_screen(walk, arguments, global, &mut Recorded)
 }
@@ -361,7 +361,7 @@ impl Source for OfRun<'_> {
 /// So many evaluations of a script without a genetic algorithm are printed.
 const MOST_EVALUATIONS: usize = 5;
 
-fn print(mut walk: TraceCursor, arguments: &TeachArgs) {
+fn print(mut walk: TraceCursor, arguments: &TeachArgs) -> Result<(), Trouble> {
     let count = walk.trace().generations.len();
     let all = match walk.generation() {
         generation if generation.is_call => count,
@@ -370,9 +370,12 @@ fn print(mut walk: TraceCursor, arguments: &TeachArgs) {
     };
     let last = arguments.generation + arguments.count.unwrap_or(all) - 1;
     let mut score = Score::default();
+    let interrupt = Arc::default();
+    let _caught = arguments.quiz.then(|| Caught::by(&interrupt));
     loop {
-        if arguments.quiz {
-            ask(&walk, &mut score);
+        if arguments.quiz && !ask(&walk, &mut score, &interrupt) {
+            terminal::print_report(&format!("\n\n{score}\n"));
+            return Err(Trouble::Reported(ExitCode::from(130)));
         }
         terminal::print_report(&format!("{}\n", plain::step(&walk)));
         if !walk.forward() || walk.number() >= last {
@@ -383,23 +386,29 @@ fn print(mut walk: TraceCursor, arguments: &TeachArgs) {
     if arguments.quiz {
         terminal::print_report(&format!("\n{score}\n"));
     }
+    Ok(())
 }
 
-/// Asks what the step will do, if there is something to ask and someone to answer.
-fn ask(walk: &TraceCursor, score: &mut Score) {
-    let Some(question) = quiz::question(walk) else { return };
+/// Asks what the step will do, if there is something to ask and someone to answer; whether the
+/// lesson continues.
+fn ask(walk: &TraceCursor, score: &mut Score, interrupt: &AtomicBool) -> bool {
+    let Some(question) = quiz::question(walk) else { return true };
     terminal::print_report(&format!("? {}\n> ", question.text));
     loop {
-        let mut answer = String::new();
-        match std::io::stdin().read_line(&mut answer) {
-            Ok(length) if length > 0 => match question.judge(&answer) {
+        match interrupts::line_or(interrupt) {
+            Answer::Line(answer) => match question.judge(&answer) {
                 Ok(verdict) => {
                     score.count(&verdict);
-                    return terminal::print_report(&format!("{}\n\n", verdict.text));
+                    terminal::print_report(&format!("{}\n\n", verdict.text));
+                    return true;
                 }
                 Err(again) => terminal::print(&format!("{again}\n> ")),
             },
-            _ => return terminal::print("(no answer)\n\n"),
+            Answer::None => {
+                terminal::print("(no answer)\n\n");
+                return true;
+            }
+            Answer::Interrupted => return false,
         }
     }
 }

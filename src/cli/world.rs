@@ -4,11 +4,10 @@ use super::c_compiler;
 use super::disk::{Disk, real_path};
 use super::fmu;
 use super::hangup;
+use super::interrupts::Caught;
 use super::limits::Stopping;
 use super::lock::Lock;
 use super::output::Output;
-#[cfg(unix)]
-use super::signals;
 use super::terminal::Terminal;
 use crate::external::c::CCompiler;
 use crate::fmi::import::Host;
@@ -24,7 +23,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// How often a timer looks whether the user asked to stop.
@@ -47,6 +46,8 @@ pub(super) struct SystemWorld {
     disk: Arc<Disk>,
     /// The folder for the results, and the lock on it once it is there.
     results: Option<(Output, Option<Lock>)>,
+    /// Until the end of the world, interrupts ask its run to stop.
+    caught: OnceLock<Caught>,
 }
 
 impl SystemWorld {
@@ -87,6 +88,7 @@ impl SystemWorld {
             changes: 0,
             disk: Arc::new(disk),
             results: None,
+            caught: OnceLock::new(),
         })
     }
 
@@ -151,17 +153,7 @@ impl SystemWorld {
     /// Makes Ctrl-C and the requests of the system to end ask the run to stop; a second one ends the
     /// process at once.
     pub(super) fn catch_interrupts(&self) {
-        let flag = Arc::clone(&self.stopping.flag);
-        let caught = ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::SeqCst) {
-                #[allow(clippy::exit, reason = "the user asked twice")]
-                std::process::exit(130);
-            }
-        });
-        // Without a handler Ctrl-C ends the process as it always did.
-        drop(caught);
-        #[cfg(unix)]
-        signals::catch(&self.stopping.flag);
+        self.caught.get_or_init(|| Caught::by(&self.stopping.flag));
         hangup::watch(&self.stopping.flag, self.stopping.noticed.clone());
         if let Some(ranks) = &self.ranks {
             ranks.stop_by(Arc::clone(&self.stopping.flag));

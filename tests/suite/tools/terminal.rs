@@ -426,3 +426,37 @@ fn the_statistics_show_their_progress() {
     }
     session.exp_eof().expect("it ends");
 }
+
+/// Every command that waits for an answer ends at the first Ctrl-C: what was done is kept, nothing is
+/// written that was not asked for.
+#[test]
+fn one_interrupt_ends_a_question() {
+    let files = [
+        ("search.mos", super::teach::SEARCH),
+        ("two.mo", "model Two output Real a = time; output Real b = 2*time; end Two;\n"),
+        ("d.csv", "t,q\n0,1\n1,3.1\n2,4.9\n"),
+    ];
+    for (arguments, asked, says) in [
+        (
+            &["teach", "search.mos", "--quiz", "--plain"][..],
+            ["become parents", "> "],
+            "No question was answered",
+        ),
+        (&["new", "d.csv", "--model", "two.mo"], ["Which variable does the column", "[1]: "], ""),
+    ] {
+        let here = folder(&files);
+        let mut command = command(here.path(), arguments);
+        command.env("TERM", "xterm").env("NO_COLOR", "1");
+        let mut session = spawn_command(command, Some(PATIENCE)).expect("a terminal");
+        // The question, and the prompt after it.
+        for text in asked {
+            session.exp_string(text).expect("it asks");
+        }
+        session.send_control('c').expect("it reads");
+        let rest = session.exp_eof().expect("it ends");
+        let status = session.process().wait().expect("it ends");
+        assert!(format!("{status:?}").contains(", 130)"), "{arguments:?}: {status:?}\n{rest}");
+        assert!(rest.contains(says), "{rest}");
+        assert!(!here.path().join("d.toml").exists(), "{rest}");
+    }
+}
