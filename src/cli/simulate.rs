@@ -376,7 +376,7 @@ fn options(arguments: &SimulateArgs) -> SimulationOptions {
     SimulationOptions {
         start: arguments.start_time,
         stop: arguments.stop_time,
-        intervals: arguments.intervals.map(|n| n as usize),
+        intervals: arguments.intervals.map(i64::from),
         tolerance: arguments.tolerance,
         method: arguments.method.clone(),
         stops_at_chattering: arguments.no_sliding,

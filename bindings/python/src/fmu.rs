@@ -173,7 +173,7 @@ impl Fmu {
         parameters: Option<IndexMap<String, Value>>,
         start: Option<f64>,
         stop: Option<f64>,
-        intervals: Option<usize>,
+        intervals: Option<i64>,
         interval: Option<f64>,
         tolerance: Option<f64>,
         method: Option<String>,

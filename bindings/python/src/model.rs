@@ -147,7 +147,7 @@ impl Model {
         parameters: Option<IndexMap<String, f64>>,
         start: Option<f64>,
         stop: Option<f64>,
-        intervals: Option<usize>,
+        intervals: Option<i64>,
         interval: Option<f64>,
         tolerance: Option<f64>,
         method: Option<String>,

@@ -148,11 +148,10 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 pub(super) fn options(args: &mut Args) -> Result<SimulationOptions, Failure> {
-    let intervals: Option<i64> = args.optional("numberOfIntervals")?;
     Ok(SimulationOptions {
         start: args.optional("startTime")?,
         stop: args.optional("stopTime")?,
-        intervals: intervals.and_then(|count| usize::try_from(count).ok()),
+        intervals: args.optional("numberOfIntervals")?,
         tolerance: args.optional("tolerance")?,
         method: args.optional("method")?,
         ..SimulationOptions::default()
@@ -164,12 +163,19 @@ pub(super) fn options(args: &mut Args) -> Result<SimulationOptions, Failure> {
 pub(super) fn completed(options: &SimulationOptions, experiment: &Experiment) -> SimulationOptions {
     let start = options.start.or(experiment.start_time).unwrap_or(0.0);
     let stop = options.stop.or(experiment.stop_time).unwrap_or(start + 1.0);
-    let interval = experiment.interval.filter(|interval| *interval > 0.0);
-    let intervals = interval.map(|interval| ((stop - start) / interval).round().max(1.0) as usize);
+    let interval = experiment.interval.filter(|interval| *interval != 0.0);
+    let intervals = match interval {
+        Some(interval) if interval > 0.0 => {
+            Some(((stop - start) / interval).round().max(1.0) as i64)
+        }
+        // What is wrong with it is said when the simulation begins.
+        Some(_) => None,
+        None => Some(500),
+    };
     SimulationOptions {
         start: Some(start),
         stop: Some(stop),
-        intervals: options.intervals.or(intervals).or(Some(500)),
+        intervals: options.intervals.or(intervals),
         tolerance: options.tolerance.or(experiment.tolerance).or(Some(1e-6)),
         ..options.clone()
     }

@@ -122,7 +122,13 @@ impl SimulationFlags {
         match name {
             "startTime" => self.start = number()?,
             "stopTime" => self.stop = number()?,
-            "stepSize" => self.step = number()?,
+            "stepSize" => {
+                self.step = number()?;
+                if let Some(step) = self.step.filter(|step| !(*step > 0.0 && step.is_finite())) {
+                    bail!(BAD_ARGUMENT, "`stepSize` in `simflags` is {step}; it must be positive and finite";
+                        help: "give the length of an output interval in seconds");
+                }
+            }
             "tolerance" => self.tolerance = number()?,
             "solver" => self.method = Some(value.to_owned()),
             "outputFormat" => self.format = Some(value.to_owned()),

@@ -209,8 +209,8 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let options = SimulationOptions {
         start: args.optional("StartTime")?,
         stop: args.optional("StopTime")?,
-        intervals: positive(args.optional("NumberOfIntervals")?),
-        interval: args.optional("OutputInterval")?.filter(|interval| *interval > 0.0),
+        intervals: set(args.optional("NumberOfIntervals")?),
+        interval: set(args.optional("OutputInterval")?),
         method: args.optional("Algorithm")?.filter(|method: &String| !method.is_empty()),
         tolerance: args.optional("Tolerance")?,
         fixed_step: args.optional("FixedStepSize")?,
@@ -224,27 +224,28 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 
 /// The arguments that all simulations share; what they leave open `experiment` may have said.
 fn options(session: &mut Session, args: &mut Args) -> Result<SimulationOptions, Fault> {
-    let set = session.extension::<Experiment>().0.clone();
+    let before = session.extension::<Experiment>().0.clone();
     let method: Option<String> = args.optional("method")?;
     // What the call itself says goes before what `experiment` has said.
-    let own = positive(args.optional("numberOfIntervals")?);
-    let interval = args.optional("outputInterval")?.filter(|interval| *interval > 0.0);
-    let intervals = if interval.is_some() { own } else { own.or(set.intervals) };
+    let own = set(args.optional("numberOfIntervals")?);
+    let interval = set(args.optional("outputInterval")?);
+    let intervals = if interval.is_some() { own } else { own.or(before.intervals) };
     let options = SimulationOptions {
-        start: args.optional("startTime")?.or(set.start),
-        stop: args.optional("stopTime")?.or(set.stop),
+        start: args.optional("startTime")?.or(before.start),
+        stop: args.optional("stopTime")?.or(before.stop),
         intervals,
-        interval: interval.or(set.interval),
-        method: method.filter(|method| !method.is_empty()).or(set.method),
-        tolerance: args.optional("tolerance")?.or(set.tolerance),
-        fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),
+        interval: interval.or(before.interval),
+        method: method.filter(|method| !method.is_empty()).or(before.method),
+        tolerance: args.optional("tolerance")?.or(before.tolerance),
+        fixed_step: args.optional("fixedstepsize")?.or(before.fixed_step),
         ..SimulationOptions::default()
     };
     Ok(with_method_of_ours(session, options))
 }
 
-fn positive(count: Option<i64>) -> Option<usize> {
-    count.and_then(|count| usize::try_from(count).ok()).filter(|count| *count > 0)
+/// A number that is given; 0 stands for none.
+fn set<T: Default + PartialEq>(number: Option<T>) -> Option<T> {
+    number.filter(|number| *number != T::default())
 }
 
 /// The problem itself, or where it is empty that of the model used last.

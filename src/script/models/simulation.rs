@@ -18,6 +18,7 @@ use crate::errors::{
     BAD_PARAMETER_VALUE, INTERRUPTED, TRANSLATED_AGAIN, UNKNOWN_PARAMETER, VALUES_DROPPED,
 };
 use crate::flatten::{self, Experiment, FlatModel, Variability};
+use crate::registry::BAD_OPTION;
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{GivenStart, LogMessage, System, Treated, Undetermined};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
@@ -38,8 +39,8 @@ pub struct SimulationOptions {
     pub start: Option<f64>,
     /// Stop time, seconds (1).
     pub stop: Option<f64>,
-    /// Number of output intervals (500).
-    pub intervals: Option<usize>,
+    /// Number of output intervals (500); as it was given, it may be negative.
+    pub intervals: Option<i64>,
     /// Length of an output interval, seconds; counts where `intervals` is not given.
     pub interval: Option<f64>,
     /// Relative tolerance (1e-4).
@@ -388,28 +389,16 @@ const MOST_INTERVALS: usize = crate::value::MAX_ELEMENTS - 1;
 /// An unknown method, or a number outside its domain.
 pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<Settings, Fault> {
     let defaults = Settings::default();
-    let start = options.start.or(experiment.start_time).unwrap_or(defaults.start);
-    let stop = options.stop.or(experiment.stop_time).unwrap_or(start + defaults.stop);
-    if !(start.is_finite() && stop.is_finite() && start <= stop) {
-        bail!(
-            crate::registry::BAD_OPTION,
-            "the simulation interval from {start} to {stop} is empty"
-        );
-    }
-    let of_interval = |interval: f64| ((stop - start) / interval).round().max(1.0) as usize;
-    let intervals = match (options.intervals, options.interval.or(experiment.interval)) {
-        (Some(intervals), _) => Some(intervals),
-        (None, Some(interval)) if interval > 0.0 => Some(of_interval(interval)),
-        _ => None,
-    };
-    if intervals.is_some_and(|intervals| intervals > MOST_INTERVALS) {
-        bail!(crate::registry::BAD_OPTION,
-            "the output from {start} to {stop} has more than {MOST_INTERVALS} intervals";
-            help: "use a longer `outputInterval` or a smaller `numberOfIntervals`");
-    }
+    let (start, stop) = limits(experiment, options, &defaults)?;
+    let intervals = intervals(experiment, options, stop - start)?;
     let tolerance = options.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
     if !is_tolerance(tolerance) {
-        bail!(crate::registry::BAD_OPTION, "`tolerance` is {tolerance}, outside 1e-14 to 0.1");
+        let outside = fault!(BAD_OPTION, "`tolerance` is {tolerance}, outside 1e-14 to 0.1");
+        return Err(annotated(outside, "Tolerance", options.tolerance.is_none()));
+    }
+    if let Some(step) = options.fixed_step.filter(|step| !(*step >= 0.0 && step.is_finite())) {
+        bail!(BAD_OPTION, "the fixed step is {step} s, which is not positive";
+            help: "give a positive step, or none for the length of an output interval");
     }
     let method = match &options.method {
         Some(name) => sim::find_integrator(name)?,
@@ -426,6 +415,73 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
         treats_chattering: !options.stops_at_chattering,
         ..Settings::default()
     })
+}
+
+/// The first and the last time.
+fn limits(
+    experiment: &Experiment,
+    options: &SimulationOptions,
+    defaults: &Settings,
+) -> Result<(f64, f64), Fault> {
+    let start = options.start.or(experiment.start_time).unwrap_or(defaults.start);
+    let stop = options.stop.or(experiment.stop_time).unwrap_or(start + defaults.stop);
+    for (what, time) in [("start", start), ("stop", stop)] {
+        if !time.is_finite() {
+            bail!(BAD_OPTION, "the {what} time is {time}, which is not a finite number";
+                help: "give a finite {what} time");
+        }
+    }
+    if start > stop {
+        let empty = fault!(
+            BAD_OPTION, "the stop time, {stop} s, lies before the start time, {start} s";
+            help: "choose a stop time that is not before the start time"
+        );
+        let is_annotated = options.stop.is_none() && experiment.stop_time.is_some();
+        return Err(annotated(empty, "StopTime", is_annotated));
+    }
+    Ok((start, stop))
+}
+
+/// The number of output intervals in a time, if something is said about it.
+fn intervals(
+    experiment: &Experiment,
+    options: &SimulationOptions,
+    duration: f64,
+) -> Result<Option<usize>, Fault> {
+    let interval = options.interval.or(experiment.interval);
+    let count = match (options.intervals, interval) {
+        (Some(count), _) => match usize::try_from(count) {
+            Ok(count) => count,
+            Err(_) => bail!(BAD_OPTION, "the number of output intervals is {count}";
+                help: "give a positive number, or none for the default"),
+        },
+        // What Dymola and OpenModelica write where nothing is set.
+        (None, None | Some(0.0)) => return Ok(None),
+        (None, Some(interval)) if interval > 0.0 => (duration / interval).round().max(1.0) as usize,
+        (None, Some(interval)) => {
+            let negative = fault!(
+                BAD_OPTION, "the output interval is {interval} s, which is not positive";
+                help: "give a positive output interval, or a number of intervals"
+            );
+            return Err(annotated(negative, "Interval", options.interval.is_none()));
+        }
+    };
+    if count > MOST_INTERVALS {
+        bail!(BAD_OPTION, "the output over {duration} s has more than {MOST_INTERVALS} intervals";
+            help: "use a longer `outputInterval` or a smaller `numberOfIntervals`");
+    }
+    Ok(Some(count))
+}
+
+/// A wrong setting, which the annotation `experiment` of the model may have said.
+fn annotated(fault: Fault, name: &str, is_annotated: bool) -> Fault {
+    match is_annotated {
+        true => fault.help(format!(
+            "it is `{name}` in the `experiment` annotation of the model: correct it there, or \
+             give another value for this simulation"
+        )),
+        false => fault,
+    }
 }
 
 /// Whether solvers can keep this tolerance.
