@@ -4,6 +4,7 @@ use super::code::{Code, Functions};
 use super::machine_code::Translated;
 
 /// No function has machine code.
+#[allow(clippy::extra_unused_type_parameters, reason = "who calls it names its numbers")]
 pub(super) fn translated<T>(_: &Functions, _: &Code) -> Option<Translated> {
     None
 }

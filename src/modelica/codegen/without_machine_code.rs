@@ -6,7 +6,7 @@ use crate::codegen::tape::Tape;
 
 /// The machine code that a tape never gets.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct MachineCode;
+pub(crate) struct MachineCode {}
 
 impl MachineCode {
     /// The tape must be run.

@@ -8,7 +8,7 @@ pub fn interpret() {}
 
 /// The code that factors never get.
 #[derive(Debug, Clone, Default)]
-pub(super) struct StraightLine;
+pub(super) struct StraightLine {}
 
 impl StraightLine {
     /// Loops over the pattern compute them.
