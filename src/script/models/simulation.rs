@@ -13,11 +13,12 @@ use super::warnings::warn;
 use crate::Session;
 use crate::codegen::errors::{CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
-use crate::diag::{At, Diagnostic, Fault};
+use crate::diag::{At, Diagnostic, Fault, Severity};
 use crate::errors::{
     BAD_PARAMETER_VALUE, INTERRUPTED, TRANSLATED_AGAIN, UNKNOWN_PARAMETER, VALUES_DROPPED,
 };
 use crate::flatten::{self, Experiment, FlatModel, Variability};
+use crate::name::Name;
 use crate::registry::BAD_OPTION;
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{GivenStart, LogMessage, System, Treated, Undetermined};
@@ -307,8 +308,13 @@ pub(super) fn compiled(
     let flat = flat_model(session, problem)?;
     let roots = session.classes.library.uses();
     let named = strings(&flat);
+    let sorted = causalize::causalize(&flat).map_err(|error| {
+        let errors = by_text(session, &flat.name, error).into_iter();
+        errors
+            .map(|error| session.classes.in_users_terms(where_named(error, &named)))
+            .collect::<Vec<_>>()
+    })?;
     let one = |error: Diagnostic| vec![session.classes.in_users_terms(where_named(error, &named))];
-    let sorted = causalize::causalize(&flat).map_err(one)?;
     let (declarations, flat) = (declarations(&flat), Some(flat));
     let flat = flat.filter(|flat| flat.equations.len() <= MOST_KEPT);
     let program = Program::compile(sorted).map_err(one)?;
@@ -318,6 +324,16 @@ pub(super) fn compiled(
         None => Translated::without_flat_model(problem, declarations, program),
     };
     Ok(Translated { roots, files: session.classes.model_files.last_answers(), ..model })
+}
+
+/// An error of an equation of a class. What a check of its text has to say of the same place tells why,
+/// such as types that do not match.
+fn by_text(session: &mut Session, class: &str, error: Diagnostic) -> Vec<Diagnostic> {
+    let (class, at) = (Name::parse(class), error.span());
+    let found = session.ask_library(|library| Ok(flatten::check(library, &class)));
+    let is_same = |one: &Diagnostic| one.severity == Severity::Error && one.span() == at;
+    let found: Vec<Diagnostic> = found.unwrap_or_default().into_iter().filter(is_same).collect();
+    if found.is_empty() { vec![error] } else { found }
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.

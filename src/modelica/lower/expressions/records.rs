@@ -4,7 +4,7 @@
 use super::{Array, Lowered, Lowering, MAX_SCALARS, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::lower::errors::ARRAY_MISMATCH;
+use crate::lower::errors::{ARRAY_MISMATCH, UNRESOLVED_REFERENCE};
 use crate::lower::string_array::StringArray;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Subscript};
@@ -132,8 +132,18 @@ pub(crate) fn field_of<S: Copy>(
     {
         return Ok(value);
     }
-    Err(fault!(super::super::errors::UNRESOLVED_REFERENCE, "there is no component `{name}`")
-        .at(span))
+    let unknown = match base {
+        Lowered::Record(fields) => {
+            let own: Vec<String> = fields.iter().map(|(own, _)| format!("`{own}`")).collect();
+            fault!(
+                UNRESOLVED_REFERENCE,
+                "this record has no component `{name}`; it has {}",
+                own.join(", ")
+            )
+        }
+        _ => fault!(UNRESOLVED_REFERENCE, "this is not a record with a component `{name}`"),
+    };
+    Err(unknown.at(span))
 }
 
 /// Arrays of one size as the elements of an array with one more dimension.
