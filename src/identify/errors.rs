@@ -20,7 +20,7 @@ codes! {
         "## What it means\n\nThe simulated X does not reach all measured X values, so there is no simulated value for those points. The message lists them.\n\n## Example\n\nMeasured up to 1.46 A/cm2, simulated up to 0.22 A/cm2.\n\n## What to do\n\nExtend the simulation (the stop time, or the end of the ramp), or remove those points.",
     /// X takes a measured value at more than one time.
     NOT_MONOTONE = "not-monotone":
-        "## What it means\n\nThe simulated X takes a measured value at several times (or stays constant there), so the corresponding simulated value is ambiguous.\n\n## Example\n\nA current that increases and decreases again, used as X.\n\n## What to do\n\nUse `time` as X, or an experiment in which X is monotonic.",
+        "## What it means\n\nThe simulated X takes a measured value at several times, so the corresponding simulated value is ambiguous. Where it is held at this value, as after the end of a ramp, the first of these times counts.\n\n## Example\n\nA current that increases and decreases again, used as X.\n\n## What to do\n\nUse `time` as X, or an experiment in which X is monotonic.",
     /// Measured data that are not finite.
     BAD_DATA = "bad-data":
         "## What it means\n\nThe measured data contain NaN or an infinite value, or no points at all.\n\n## Example\n\nA matrix exported with an empty cell.\n\n## What to do\n\nRemove or correct the point given in the message.",

@@ -26,11 +26,12 @@ pub struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// The slice `k..=k + 1` of the path in which X takes the value `target`.
+    /// The slice `k..=k + 1` of the path in which X first takes the value `target`. X may be held at
+    /// this value, as after a ramp, and then continue in the direction from which it came.
     ///
     /// # Errors
     ///
-    /// `points-outside` when X never takes it, `not-monotone` when it does so at several times.
+    /// `points-outside` when X never takes it, `not-monotone` when it returns to it.
     pub(crate) fn slice_of(&self, name: &str, target: f64) -> Result<usize, Fault> {
         let mut found: Option<usize> = None;
         for k in 0..self.x.len().saturating_sub(1) {
@@ -39,13 +40,16 @@ impl Path<'_> {
             if !holds || self.times[k] == self.times[k + 1] {
                 continue;
             }
-            let touches = found.is_some_and(|before| self.x[before + 1] == target && a == target);
-            if a == b || (found.is_some() && !(touches && self.turns_on(k, target))) {
+            let returns = |before: usize| {
+                let is_held = self.x[before + 1..=k].iter().all(|&x| x == target);
+                !is_held || (b != target && !self.turns_on(k, target))
+            };
+            if let Some(before) = found.filter(|&before| returns(before)) {
                 bail!(
                     NOT_MONOTONE,
                     "`{name}` takes the measured value {target} at several times, such as {} s \
                      and {} s",
-                    self.times[found.unwrap_or(k)],
+                    self.times[before],
                     self.times[k + 1];
                     help: "use `time` as X, or an experiment in which `{name}` is monotonic"
                 );
@@ -59,6 +63,14 @@ impl Path<'_> {
                 None => self.outside(name, &[target]),
             }
         })
+    }
+
+    /// How far into slice `k` X takes the value `target`: from 0, where it is held there, to 1.
+    pub(crate) fn share(&self, k: usize, target: f64) -> f64 {
+        match self.x[k + 1] - self.x[k] {
+            0.0 => 0.0,
+            change => (target - self.x[k]) / change,
+        }
     }
 
     /// The fault that says where X jumps over a point.
@@ -114,14 +126,18 @@ impl Path<'_> {
     ) -> Result<(), Fault> {
         for (value, &target) in out.iter_mut().zip(targets) {
             let k = self.slice_of(name, target)?;
-            let fraction = (target - self.x[k]) / (self.x[k + 1] - self.x[k]);
+            let fraction = self.share(k, target);
             *value = y[k] + (y[k + 1] - y[k]) * fraction;
         }
         Ok(())
     }
 }
 
-/// The time in `low..=high` at which `x_at` takes the value `target`, which lies between its
+/// Where X has the same value at a time and this part of a slice before or after it, it is held: its
+/// first time is looked for. X that changes by more than 1e-9 of its value in a slice differs by then.
+const HELD: f64 = 1e-6;
+
+/// The first time in `low..=high` at which `x_at` takes the value `target`, which lies between its
 /// values at the ends: halves the interval until no number lies between its ends.
 pub fn time_of<E>(
     mut low: f64,
@@ -133,7 +149,8 @@ pub fn time_of<E>(
     if x_low == target {
         return Ok(low);
     }
-    if x_high == target {
+    let (earlier, end) = (HELD * (high - low), high);
+    if x_high == target && x_at(high - earlier)? != target {
         return Ok(high);
     }
     let rises = x_low < x_high;
@@ -145,9 +162,12 @@ pub fn time_of<E>(
         }
         let x = x_at(middle)?;
         if x == target {
-            return Ok(middle);
+            let (before, after) = (middle - earlier, (middle + earlier).min(end));
+            if x_at(before)? != target && x_at(after)? != target {
+                return Ok(middle);
+            }
         }
-        if (x < target) == rises {
+        if x != target && (x < target) == rises {
             low = middle;
         } else {
             high = middle;
@@ -184,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn turning_back_and_standing_still_are_refused() {
+    fn turning_back_is_refused_and_standing_still_is_not() {
         let back = Path { times: &TIMES, x: &[0.0, 2.0, 1.0, 3.0] };
         assert_eq!(back.slice_of("x", 1.5).unwrap_err().code, NOT_MONOTONE);
         assert_eq!(back.slice_of("x", 0.5), Ok(0), "not used where it turns back");
@@ -192,7 +212,16 @@ mod tests {
         assert_eq!(peak.slice_of("x", 0.0).unwrap_err().code, NOT_MONOTONE);
         assert_eq!(peak.slice_of("x", 2.0).unwrap_err().code, NOT_MONOTONE, "touches the peak");
         let still = Path { times: &TIMES, x: &[0.0, 1.0, 1.0, 2.0] };
-        assert_eq!(still.slice_of("x", 1.0).unwrap_err().code, NOT_MONOTONE);
+        assert_eq!(still.slice_of("x", 1.0), Ok(0), "where it is reached first");
+        let mut held = [0.0; 3];
+        let y = [0.0, 10.0, 20.0, 30.0];
+        let begins = Path { times: &TIMES, x: &[1.0, 1.0, 2.0, 2.0] };
+        begins.interpolate("x", &y, &[1.0, 1.5, 2.0], &mut held).unwrap();
+        assert_eq!(held, [0.0, 15.0, 20.0], "held at both ends");
+        let trapezoid = Path { times: &TIMES, x: &[0.0, 1.0, 1.0, 0.0] };
+        assert_eq!(trapezoid.slice_of("x", 1.0).unwrap_err().code, NOT_MONOTONE);
+        let again = Path { times: &[0.0, 1.0, 2.0, 2.0, 3.0], x: &[1.0, 1.0, 2.0, 1.0, 1.0] };
+        assert_eq!(again.slice_of("x", 1.0).unwrap_err().code, NOT_MONOTONE, "left and back");
         let event = Path { times: &[0.0, 1.0, 1.0, 2.0], x: &[0.0, 1.0, 1.0, 2.0] };
         assert_eq!(event.slice_of("x", 1.0), Ok(0), "two rows at an event are one time");
     }
@@ -212,6 +241,20 @@ mod tests {
         assert!((1.46 * time - 0.107).abs() <= 1.4e-17, "{}", 1.46 * time - 0.107);
         assert_eq!(time_of(0.0, 1.0, 1.46, |t| Ok::<f64, ()>(1.46 * t)), Ok(1.0));
         assert_eq!(time_of(0.0, 4.0, 7.0, |t| Ok::<f64, ()>(10.0 - t)), Ok(3.0));
+    }
+
+    #[test]
+    fn the_first_time_of_a_held_value_is_found() {
+        for end in [0.1, 0.5, 0.703, 0.999, 1.0] {
+            let held = |t: f64| Ok::<f64, ()>(t.min(end));
+            assert_eq!(time_of(0.0, 1.0, end, held), Ok(end));
+            let falls = |t: f64| Ok::<f64, ()>(-t.min(end));
+            assert_eq!(time_of(0.0, 1.0, -end, falls), Ok(end));
+            // In the middle, and then on.
+            let rests = |t: f64| Ok::<f64, ()>(t.min(end).max(t - 0.05));
+            let time = time_of(0.0, 1.2, end, rests).unwrap();
+            assert!((time - end).abs() < 1e-15, "{time} {end}");
+        }
     }
 
     proptest! {

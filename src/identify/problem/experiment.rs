@@ -479,11 +479,17 @@ impl Stage {
         let (x, y) = (trajectory.column(x_column), trajectory.column(column));
         let (dx, dy) = (trajectory.column(of(x_column)), trajectory.column(of(column)));
         let times = trajectory.time();
-        let k = Path { times, x }.slice_of(&self.x_name, target).ok()?;
-        let share = (target - x[k]) / (x[k + 1] - x[k]);
-        // Not across an event, which has two rows.
-        let first = k.checked_sub(1).filter(|before| times[*before] < times[k]).unwrap_or(k);
-        let last = Some(k + 2).filter(|at| times.get(*at).is_some_and(|t| *t > times[k + 1]));
+        let path = Path { times, x };
+        let k = path.slice_of(&self.x_name, target).ok()?;
+        if x[k] == x[k + 1] {
+            // Held from the beginning: the time is the first one, whatever the parameters are.
+            return dy.get(k).copied();
+        }
+        let share = path.share(k, target);
+        // Not across an event, which has two rows, nor where X is held.
+        let is_slice = |a: usize, b: usize| times[a] < times[b] && x[a] != x[b];
+        let first = k.checked_sub(1).filter(|before| is_slice(*before, k)).unwrap_or(k);
+        let last = Some(k + 2).filter(|at| *at < times.len() && is_slice(k + 1, *at));
         let last = last.unwrap_or(k + 1);
         let at_given_x = |row: usize, ends: [usize; 2]| {
             let [a, b] = ends;

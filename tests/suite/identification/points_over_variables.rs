@@ -56,6 +56,32 @@ fn points_lie_where_the_simulated_x_has_their_values() {
     }
 }
 
+/// A value at which X is held counts where it is reached first: at the end of a ramp, and in the middle.
+#[test]
+fn held_values_count_where_they_are_reached_first() {
+    let ramp = "Modelica.Blocks.Sources.Ramp i(height = 2, duration = 1, startTime = 0.5); \
+                Real X = i.y;";
+    let table: [(&str, &[f64], &[f64]); 5] = [
+        (ramp, &[0.0, 1.0, 2.0], &[0.0, 1.0, 1.5]),
+        ("Real X = if time < 1 then time else 1;", &[0.5, 1.0], &[0.5, 1.0]),
+        ("Real X = min(time, 0.703);", &[0.5, 0.703], &[0.5, 0.703]),
+        (
+            "Real X = if time < 1 then time elseif time < 2 then 1 else time - 1;",
+            &[1.0, 1.5],
+            &[1.0, 2.5],
+        ),
+        ("Real X = -max(time, 1.25);", &[-1.25, -2.0], &[0.0, 2.0]),
+    ];
+    for (x, points, times) in table {
+        let (found, said) = evaluated(x, points);
+        assert_eq!((found.len(), said.as_str()), (points.len(), ""), "{x}");
+        for (found, time) in found.iter().zip(times) {
+            let expected = (-time).exp();
+            assert!((found - expected).abs() < 1e-6 * expected, "{x}: {found} {expected}");
+        }
+    }
+}
+
 #[test]
 fn blocks_that_begin_later_are_followed() {
     let ramp = "Modelica.Blocks.Sources.Ramp i(height = 1, duration = 1, startTime = 1); \
@@ -77,7 +103,12 @@ fn values_taken_twice_or_never_are_refused_with_the_reason() {
     let several = "takes the measured value";
     refused("if time < 1.5 then time else 3 - time", 1.0, "error[not-monotone]", several);
     refused("time - floor(time)", 0.5, "error[not-monotone]", several);
-    refused("if time < 1 then time else 1", 1.0, "error[not-monotone]", several);
+    refused(
+        "if time < 1 then time elseif time < 2 then 1 else 3 - time",
+        1.0,
+        "error[not-monotone]",
+        several,
+    );
     let jump = "time + (if time > 1 then 1 else 0)";
     refused(jump, 1.5, "error[points-outside]", "jumps over this value at 1 s");
     refused(jump, 4.5, "error[points-outside]", "simulated only from 0 to 4");
