@@ -17,6 +17,9 @@ codes! {
     /// A script to run does not exist.
     SCRIPT_NOT_FOUND = "script-not-found":
         "## What it means\n\n`RunScript` or the command line names a script that was not found. The search covers the folder of the calling script, then the working directory, each with and without the extension `.mos`.\n\n## Example\n\n`RunScript(\"GAPILib_INT.mos\")`\n\n## What to do\n\nCorrect the name, or write the path relative to the folder of the calling script.",
+    /// A line that begins with a sign and continues the line before (a note).
+    CONTINUED_LINE = "continued-line":
+        "## What it means\n\nA line of a script begins with `+` or `-`, and the line before has no semicolon. As in Modelica, where line ends mean nothing, the expression continues. The note is for lines that look like a statement of their own: no blank follows the sign, and the line is not indented deeper than the statement.\n\n## Example\n\n`a = 4` and in the next line `-1`: a is 3.\n\n## What to do\n\nWrite a semicolon at the end of the line before if this is a statement of its own. If the expression continues, write a blank after the sign, indent the line, or put brackets around the expression.",
     /// A file cannot be read or written.
     FILE_ERROR = "file-error":
         "## What it means\n\nA file is missing, or the system refuses to read or write it.\n\n## Example\n\n`readMatrix(\"missing.mat\", \"A\", 3, 3)`\n\n## What to do\n\nCorrect the path. Relative paths start from the working directory, which `cd()` shows.",

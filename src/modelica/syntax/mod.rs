@@ -163,6 +163,43 @@ pub fn lexemes(source: SourceId, text: &str, is_script: bool) -> Result<Vec<Lexe
     scan::lexemes(source, text, dialect)
 }
 
+/// The signs in a script that may have been meant to begin a statement, and continue the one of the line
+/// before: without a blank after them, on a line that is not indented deeper than the statement.
+///
+/// ```
+/// use gapilib_base::source::SourceId;
+/// use gapilib_modelica::syntax;
+///
+/// let signs = |text| syntax::continuing_signs(SourceId::NONE, text).len();
+/// assert_eq!((signs("a = 4\n-1"), signs("a = 4;\n-1"), signs("a = (4\n-1)")), (1, 0, 0));
+/// assert_eq!((signs("a = 4\n  -1"), signs("a = 4\n- 1"), signs("a = 4 -\n1")), (0, 0, 0));
+/// ```
+pub fn continuing_signs(source: SourceId, text: &str) -> Vec<Span> {
+    // Few scripts have such a line at all: the others are not read a second time.
+    let has_sign = |line: &str| line.trim_start().starts_with(['+', '-']);
+    if !text.lines().any(has_sign) {
+        return Vec::new();
+    }
+    let lexemes = lexemes(source, text, true).unwrap_or_default();
+    let indentation = |at: usize| {
+        let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
+        text[line..].len() - text[line..].trim_start_matches([' ', '\t']).len()
+    };
+    let (mut found, mut begin, mut is_over) = (Vec::new(), 0, true);
+    for pair in lexemes.windows(2) {
+        let [sign, operand] = pair else { continue };
+        if is_over || sign.ends_line {
+            begin = sign.start;
+        }
+        is_over = sign.kind == LexemeKind::Semicolon;
+        let is_near = sign.end == operand.start;
+        if sign.continues && is_near && indentation(sign.start) <= indentation(begin) {
+            found.push(Span::new(source, sign.start, operand.end));
+        }
+    }
+    found
+}
+
 /// Reads an expression.
 ///
 /// ```

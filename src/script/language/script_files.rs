@@ -4,9 +4,10 @@
 use super::parsed_scripts::Parsed;
 use super::script_search::ScriptSearch;
 use crate::diag::{Diagnostic, Fault};
-use crate::errors::SCRIPT_NOT_FOUND;
+use crate::errors::{CONTINUED_LINE, SCRIPT_NOT_FOUND};
 use crate::models::imported::refuse_as_text;
 use crate::source::{SourceId, Span};
+use crate::syntax::continuing_signs;
 use crate::{Dialect, Session};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -82,7 +83,19 @@ impl Session {
         let added = refused.and_then(|()| self.add_file(path));
         let (source, text) = added.map_err(|fault| vec![fault.at(Span::NONE)])?;
         let script = Arc::new(Parsed::read(source, &text).map_err(|error| vec![error])?);
+        self.note_continuing_signs(source, &text);
         self.parsed.keep(path, stamp, &script);
         Ok(script)
+    }
+
+    /// Says of lines that begin with a sign that they continue the line before.
+    pub(super) fn note_continuing_signs(&mut self, source: SourceId, text: &str) {
+        for sign in continuing_signs(source, text) {
+            let message =
+                "this line continues the expression of the line before, which has no semicolon";
+            let help = "write a semicolon at the end of the line before if this is a statement of its \
+                        own, or a blank after the sign if it is not";
+            self.report(Fault::new(CONTINUED_LINE, message).help(help).at(sign).note());
+        }
     }
 }

@@ -34,6 +34,7 @@ impl Session {
         let source = self.sources.add(name, text);
         match Parsed::read(source, text) {
             Ok(script) => {
+                self.note_continuing_signs(source, text);
                 let folder = self.world.current_dir();
                 let done = self.run_script_statements(&script, folder);
                 debug_assert!(done.is_ok(), "the outermost script reports its own errors");

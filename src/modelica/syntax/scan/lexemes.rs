@@ -43,8 +43,22 @@ pub struct Lexeme {
     pub end: usize,
     /// Whether a line end before it closes a statement of a script.
     pub ends_line: bool,
+    /// Whether it is a sign that begins a line of a script and continues the statement of the line
+    /// before, which could have ended there.
+    pub continues: bool,
     /// Whether it is in brackets, or a word of a conditional expression: no keyword of a statement.
     pub(crate) in_expression: bool,
+}
+
+/// What a token of a script follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Follows {
+    /// A statement that the line end before it closes.
+    Statement,
+    /// A line that could be a whole statement, which it continues by a sign.
+    Line,
+    /// The token before it.
+    Token,
 }
 
 /// Operators of two characters, which the scanner reads one by one.
@@ -61,7 +75,7 @@ impl Lexeme {
         matches!(self.kind, LexemeKind::LineComment | LexemeKind::BlockComment)
     }
 
-    pub(super) fn of(token: &Token<'_>, ends_line: bool, in_expression: bool) -> Lexeme {
+    pub(super) fn of(token: &Token<'_>, follows: Follows, in_expression: bool) -> Lexeme {
         let kind = match token.kind {
             TokenKind::Word => LexemeKind::Word,
             TokenKind::Quoted => LexemeKind::Quoted,
@@ -74,7 +88,14 @@ impl Lexeme {
             TokenKind::Operator => LexemeKind::Operator,
             TokenKind::Command => LexemeKind::Command,
         };
-        Lexeme { kind, start: token.start, end: token.end, ends_line, in_expression }
+        Lexeme {
+            kind,
+            start: token.start,
+            end: token.end,
+            ends_line: follows == Follows::Statement,
+            continues: follows == Follows::Line,
+            in_expression,
+        }
     }
 }
 
@@ -114,7 +135,8 @@ fn comments(text: &str, gap: Range<usize>, found: &mut Vec<Lexeme>) {
             }
         };
         let end = start + length;
-        found.push(Lexeme { kind, start, end, ends_line: false, in_expression: false });
+        let (ends_line, continues, in_expression) = (false, false, false);
+        found.push(Lexeme { kind, start, end, ends_line, continues, in_expression });
         at = end;
         if kind == LexemeKind::LineComment {
             at = start + rest.find('\n').unwrap_or(rest.len());

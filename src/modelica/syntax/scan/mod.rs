@@ -17,6 +17,7 @@ use crate::source::{SourceId, Span};
 use crate::syntax::errors::{NESTING_TOO_DEEP, NOT_A_SCRIPT, TEXT_TOO_LARGE, UNCLOSED_BRACKET};
 use blocks::Blocks;
 use depth::Depth;
+use lexemes::Follows;
 pub use lexemes::{Lexeme, LexemeKind};
 use std::ops::Range;
 use tokens::{CommandPlace, Token, TokenKind, Tokens};
@@ -205,11 +206,14 @@ impl<'t> Scanner<'t> {
     }
 
     fn step(&mut self, token: Token<'t>) -> Result<(), Diagnostic> {
-        let mut ends_line = false;
+        let mut follows = Follows::Token;
         if self.brackets.is_empty() {
             self.blocks.name_class(&token);
-            ends_line = self.ends_line(&token);
-            if ends_line {
+            if self.begins_with_sign(&token) {
+                follows = Follows::Line;
+            }
+            if self.ends_line(&token) {
+                follows = Follows::Statement;
                 let end = token.line_end.unwrap_or(token.start);
                 self.out[end] = LINE_END;
                 self.end_statement();
@@ -225,7 +229,7 @@ impl<'t> Scanner<'t> {
             _ => self.blocks.leave_start(),
         }
         if let Some(kept) = &mut self.kept {
-            kept.push(Lexeme::of(&token, ends_line, in_condition));
+            kept.push(Lexeme::of(&token, follows, in_condition));
         }
         self.previous = Some(token);
         self.check_depth(&token)
@@ -233,12 +237,22 @@ impl<'t> Scanner<'t> {
 
     /// Whether a line end before the token closes a statement.
     fn ends_line(&self, token: &Token<'t>) -> bool {
+        self.follows_line(token)
+            && !(self.awaiting_else > 0 && matches!(token.text, "else" | "elseif"))
+            && token.can_begin_statement()
+    }
+
+    /// Whether the token is a sign that begins a line and could have begun a statement.
+    fn begins_with_sign(&self, token: &Token<'t>) -> bool {
+        self.follows_line(token) && matches!(token.text, "+" | "-")
+    }
+
+    /// Whether a line end of a script before the token could close a statement.
+    fn follows_line(&self, token: &Token<'t>) -> bool {
         self.dialect == Dialect::Script
             && token.line_end.is_some()
             && !self.blocks.in_class()
             && !self.blocks.in_header()
-            && !(self.awaiting_else > 0 && matches!(token.text, "else" | "elseif"))
-            && token.can_begin_statement()
             && self.previous.is_some_and(|previous| previous.can_end_statement())
     }
 
