@@ -1,7 +1,7 @@
 //! Own functions against those of the standard library and against exact values.
 
 use super::{acos, asin, atan, atan2, cos, cosh, exp, exp_m1, hypot, ln, ln_1p, log10, powf, powi};
-use super::{acosh, asinh, atanh, cbrt, log2, sin, sinh, tan, tanh};
+use super::{acosh, asinh, atanh, cbrt, log2, sin, sin_cos, sinh, tan, tanh};
 
 /// Arguments without order in an interval.
 fn draws(low: f64, high: f64) -> impl Iterator<Item = f64> {
@@ -52,6 +52,17 @@ fn functions_of_one_number_are_those_of_the_standard_library_but_for_the_last_di
             let same_sign = own.is_sign_negative() == system.is_sign_negative();
             assert!(same_sign || own.is_nan(), "{name}({x:?}) = {own:?}, not {system:?}");
         }
+    }
+}
+
+#[test]
+fn sine_and_cosine_are_those_computed_alone() {
+    let special = [0.0, -0.0, f64::INFINITY, f64::NAN, 1e-320, -1e-9, 1e22, f64::MAX];
+    let angles = draws(-1e5, 1e5).chain(draws(-7.0, 7.0)).chain(draws(-0.05, 0.05));
+    for x in angles.chain(special) {
+        let (sine, cosine) = sin_cos(x);
+        assert_eq!([ulps(sine, sin(x)), ulps(cosine, cos(x))], [0, 0], "{x:?}");
+        assert_eq!(sine.is_sign_negative(), sin(x).is_sign_negative(), "{x:?}");
     }
 }
 
