@@ -33,6 +33,18 @@ const CORPUS: &[(&str, &str)] = &[
          y := y + u*i/j; if y > 5 + n then return; end if; end for; end for; y := -u; end f;",
     ),
     (
+        "short loops over known ranges",
+        "function f {h} protected constant Real p[5] = {0.5, -2, 3, 0.25, -1}; Real z; Integer k = 0; \
+         algorithm y := p[5]; z := 0; for i in 1:4 loop y := p[5 - i] + u*y; end for; \
+         for i in 5:-2:1 loop z := z*u + p[i]; end for; for i in 1:0 loop z := 1/(i - i); end for; \
+         for i in 0:2 loop if i > 0 then z := z + p[i]*sin(u)*cos(u); end if; end for; \
+         for i in 0:2 loop if u > 1e9 then z := z + p[6 - i]; end if; end for; \
+         while k < n loop k := k + 1; for i in 1:3 loop for j in 2:3 loop \
+         if j*u > i + k then break; end if; z := z + u*i*j; end for; end for; \
+         for i in {0.5, 1.5} loop y := y + i*z; if y > 40 then return; end if; end for; \
+         end while; end f;",
+    ),
+    (
         "subscripts that are computed",
         "function f {h} protected Real a[3, 4]; Integer at; algorithm for i in 1:3 loop \
          for j in 1:4 loop a[i, j] := sin(i*u) + j; end for; end for; \

@@ -39,6 +39,13 @@ pub(super) struct Checkpoint {
     scopes: usize,
 }
 
+impl Checkpoint {
+    /// The number of instructions.
+    pub(super) fn length(self) -> usize {
+        self.instructions
+    }
+}
+
 impl Emitter {
     /// Code so far, its sizes yet to be filled in.
     pub(super) fn finish(

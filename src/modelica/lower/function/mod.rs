@@ -4,8 +4,8 @@
 //!
 //! A function is compiled once for every combination of sizes of its arguments. Where a size
 //! depends on the value of an Integer input, it is compiled for that value, which must be known.
-//! Loops stay loops; only a loop whose body needs sizes that change from iteration to iteration is
-//! unrolled. Where sizes are known only when it is called, the interpreter carries out the call.
+//! Loops stay loops; only a short one, and one whose body needs sizes that change from iteration to
+//! iteration, is unrolled. Where sizes are known only when it is called, the interpreter carries out the call.
 
 mod assigned_shape;
 mod composer;
@@ -18,6 +18,7 @@ mod headers;
 mod instances;
 mod interpreted;
 mod inverse;
+mod mark;
 mod notices;
 mod on_demand;
 mod partial_derivative;
@@ -29,6 +30,7 @@ mod run_time_sizes;
 mod single_assignment;
 mod statements;
 mod target;
+mod unrolling;
 
 pub(super) use external_kinds::{confirms, fails, prints};
 pub(super) use headers::library_of;

@@ -7,7 +7,8 @@
 //! is the last resort: constants, loops that are unrolled and calls compiled for known arguments
 //! come first, as their code is shorter.
 
-use super::emitter::{Checkpoint, Operand};
+use super::emitter::Operand;
+use super::mark::Mark;
 use super::statements::Body;
 use crate::bytecode::Instruction;
 use crate::diag::Diagnostic;
@@ -31,14 +32,6 @@ const MOST: usize = 64;
 const BEYOND: usize = 2 * MOST + 1;
 /// Integers that decide sizes of one statement: `y[i:j] := x[k:k + j - i]` has three.
 const MAX_INTEGERS: usize = 3;
-
-/// A state of a function being compiled to go back to.
-pub(super) struct Mark {
-    emitter: Checkpoint,
-    branches: usize,
-    breaks: Vec<usize>,
-    returns: usize,
-}
 
 impl Body<'_, '_> {
     /// Where the code is now.

@@ -3,7 +3,9 @@
 use super::emitter::{Emitter, Operand};
 use super::external_kinds::prints;
 use super::instances::{Argument, Instances};
+use super::mark::Mark;
 use super::single_assignment::assigned_once;
+use super::unrolling::is_short;
 use crate::arithmetic::{Operation, Operator, Register};
 use crate::bytecode::{Code, Instruction};
 use crate::diag::Diagnostic;
@@ -213,6 +215,28 @@ impl<'a, 'f> Body<'a, 'f> {
         Ok(self.end_loop())
     }
 
+    /// Replaces a loop, written since a mark, by its iterations if they are few and short.
+    fn unroll_if_short(
+        &mut self,
+        index: &ForIndex,
+        body: Iteration<'_>,
+        mark: &Mark,
+    ) -> Done<Self> {
+        let length = self.emitter.len() - mark.length();
+        let written = self.mark();
+        let is_short = is_short(index, length, |e| self.lowering().known(e).ok());
+        self.restore(&written);
+        if !is_short {
+            return Ok(Flow::Next);
+        }
+        self.restore(mark);
+        self.unrolled(index, body).or_else(|_| {
+            // What is wrong in an iteration may be in a branch that is never taken.
+            self.restore(mark);
+            self.counted(index, body)
+        })
+    }
+
     /// The head of a loop, with its variable.
     pub(super) fn begin_counting(&mut self, range: Iterated) -> Counting {
         let (counter, variable) = (self.emitter.block(1), self.emitter.block(1));
@@ -362,13 +386,15 @@ impl Domain for Body<'_, '_> {
         Ok(Flow::Next)
     }
 
-    /// As a loop; unrolled if the body needs sizes that change from iteration to iteration; where
-    /// that is not possible either, the statements with such sizes are written size by size.
+    /// As a loop; unrolled if it is short or if the body needs sizes that change from iteration to
+    /// iteration; where that is not possible either, the statements with such sizes are written size
+    /// by size.
     fn for_loop(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let mark = self.mark();
         let error = match self.counted(index, body) {
+            Ok(_) => return self.unroll_if_short(index, body, &mark),
             Err(e) if e.code == NO_CONSTANT_VALUE => e,
-            result => return result,
+            other => return other,
         };
         self.restore(&mark);
         match self.unrolled(index, body) {
