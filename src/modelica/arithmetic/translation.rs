@@ -32,6 +32,8 @@ pub(crate) struct Translator {
     pointer: Type,
     /// Functions of the table with one and two arguments.
     table: [SigRef; 2],
+    /// [`sine_and_cosine`], and where it writes to.
+    angle: (SigRef, StackSlot),
     /// Where numbers have derivatives: the same with one and two arguments, and where they write
     /// their result to.
     dual: Option<([SigRef; 2], StackSlot)>,
@@ -55,11 +57,16 @@ impl Translator {
         };
         let table = [1, 2].map(|arity| import(arity, &[], Some(types::F64)));
         let dual = (parts == 2).then(|| [2, 4].map(|numbers| import(numbers, &[pointer], None)));
-        let dual = dual.map(|signatures| {
+        let mut angle = Signature::new(target.default_call_conv);
+        angle.params.extend([types::F64, pointer].map(AbiParam::new));
+        let angle = builder.import_signature(angle);
+        let mut two_numbers = || {
             let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, 16, 3);
-            (signatures, builder.create_sized_stack_slot(slot))
-        });
-        Translator { pointer, table, dual }
+            builder.create_sized_stack_slot(slot)
+        };
+        let angle = (angle, two_numbers());
+        let dual = dual.map(|signatures| (signatures, two_numbers()));
+        Translator { pointer, table, angle, dual }
     }
 
     /// A value without derivative.
@@ -188,6 +195,17 @@ impl Translator {
         builder.inst_results(call)[0]
     }
 
+    /// Sine and cosine of a value.
+    pub(crate) fn sine_and_cosine(&self, builder: &mut FunctionBuilder, a: Value) -> [Value; 2] {
+        let (signature, slot) = self.angle;
+        let callee = sine_and_cosine as *const () as usize;
+        let callee = builder.ins().iconst(self.pointer, callee as i64);
+        let result = builder.ins().stack_addr(self.pointer, slot, 0);
+        builder.ins().call_indirect(signature, callee, &[a, result]);
+        let flags = MemFlagsData::trusted();
+        [0, 8].map(|offset| builder.ins().load(types::F64, flags, result, offset))
+    }
+
     /// The result of a function that writes it where its last argument points to.
     fn on_duals(
         &self,
@@ -261,6 +279,12 @@ extern "C" fn unary(function: fn(f64) -> f64, a: f64) -> f64 {
 #[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
 extern "C" fn binary(function: fn(f64, f64) -> f64, a: f64, b: f64) -> f64 {
     function(a, b)
+}
+
+/// Writes sine and cosine of a number.
+unsafe extern "C" fn sine_and_cosine(a: f64, result: *mut [f64; 2]) {
+    // SAFETY: a slot of the stack.
+    unsafe { *result = elementary::sin_cos(a).into() }
 }
 
 /// A function of one argument on a dual number.

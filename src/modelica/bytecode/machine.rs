@@ -1,6 +1,7 @@
 //! Runs functions on a stack that is kept between calls.
 
 use super::code::{Code, Derivative, Functions, Instruction};
+use super::direct_calls::{self, Call, MakesCalls};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
 use super::machine_code::Next;
@@ -16,6 +17,8 @@ use std::sync::Arc;
 
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 2_000;
+/// Deepest nesting of calls that machine code makes itself: each takes some of the stack of the thread.
+const MAX_DIRECT_CALLS: usize = 16;
 /// Largest number of registers of all frames.
 pub(super) const MAX_STACK: usize = 20_000_000;
 
@@ -25,6 +28,10 @@ pub struct Machine {
     stacks: Stacks,
     /// Callers, innermost last.
     callers: Vec<Caller>,
+    /// How many calls of machine code have not returned to it yet.
+    direct_calls: usize,
+    /// Why the last of these failed.
+    failure: Option<Failure>,
     derivatives: Vec<f64>,
     externals: Externals,
     budget: u64,
@@ -284,21 +291,19 @@ impl Machine {
     ) -> Result<(), Failure> {
         let outermost = self.callers.len();
         let mut code = &functions.codes[function as usize];
-        enter(code, stack, base);
         let mut at = 0usize;
         loop {
-            let unassigned = if self.has_defaults { 0.0 } else { f64::NAN };
-            let frame = &mut stack[base..];
-            match advance((functions, code), &mut at, frame, unassigned, &mut self.budget) {
+            let request = self.advance((functions, code), &mut at, base, stack);
+            if let Some(failure) = self.failure.take() {
+                return Err(failure);
+            }
+            match request {
                 Ok(None) => {
-                    let outputs = base + code.outputs as usize;
-                    let outputs = outputs..outputs + code.n_outputs as usize;
                     if self.callers.len() == outermost {
                         return Ok(());
                     }
                     let Some(caller) = self.callers.pop() else { return Ok(()) };
-                    self.keep(functions, function, caller, &stack[..], outputs.clone());
-                    stack.copy_within(outputs, (caller.base + caller.results) as usize);
+                    self.end((functions, function, base), caller, stack);
                     (function, at, base) =
                         (caller.function, caller.at as usize, caller.base as usize);
                     code = &functions.codes[function as usize];
@@ -313,44 +318,14 @@ impl Machine {
                 Ok(Some(MachineRequest::Call(call))) => {
                     let callee = &functions.codes[call.function as usize];
                     let next = base + code.frame as usize;
-                    let here = |reason| Failure { function, at: at as u32 - 1, reason };
-                    if self.callers.len() >= MAX_CALLS || next + callee.frame as usize > MAX_STACK {
-                        return Err(here(Reason::Depth));
+                    if self.is_too_deep(callee, next) {
+                        let reason = Reason::Depth;
+                        return Err(Failure { function, at: at as u32 - 1, reason });
                     }
-                    grow(stack, next + callee.frame as usize);
-                    let first = base + call.arguments as usize;
-                    let known = first..first + callee.n_inputs as usize;
-                    let results = base + call.results as usize;
-                    if self.recall(functions, call.function, stack, known, results) {
-                        continue;
+                    if self.begin((functions, callee), &call, (base, next), stack)? {
+                        self.callers.push(self.caller(function, at as u32, base, &call));
+                        (function, at, base, code) = (call.function, 0, next, callee);
                     }
-                    if let Some(derivative) = &callee.derivative {
-                        let arguments = first..first + callee.n_inputs as usize;
-                        let results = base + call.results as usize;
-                        if T::differentiate(
-                            self,
-                            functions,
-                            call.function,
-                            derivative,
-                            stack,
-                            arguments,
-                            results,
-                        )? {
-                            continue;
-                        }
-                    }
-                    stack.copy_within(first..first + callee.n_inputs as usize, next);
-                    self.callers.push(Caller {
-                        function,
-                        at: at as u32,
-                        base: base as u32,
-                        arguments: call.arguments,
-                        results: call.results,
-                        budget: self.budget,
-                    });
-                    (function, at, base) = (call.function, 0, next);
-                    code = callee;
-                    enter(code, stack, base);
                 }
                 Ok(Some(MachineRequest::Warning)) => {
                     let reason = Reason::Assertion;
@@ -363,6 +338,154 @@ impl Machine {
                 }
             }
         }
+    }
+
+    /// Who is to continue after a call by the instruction before `at`.
+    fn caller(&self, function: u32, at: u32, base: usize, call: &Call) -> Caller {
+        Caller {
+            function,
+            at,
+            base: base as u32,
+            arguments: call.arguments,
+            results: call.results,
+            budget: self.budget,
+        }
+    }
+
+    /// Whether calls would be nested too deep with one whose frame begins there.
+    fn is_too_deep(&self, callee: &Code, next: usize) -> bool {
+        self.callers.len() + self.direct_calls >= MAX_CALLS
+            || next + callee.frame as usize > MAX_STACK
+    }
+
+    /// Begins a call from a frame at `base` to one at `next`, where its arguments are then; whether it
+    /// must be run: else its results are known.
+    fn begin<T: Differentiate>(
+        &mut self,
+        (functions, callee): (&Functions, &Code),
+        call: &Call,
+        (base, next): (usize, usize),
+        stack: &mut Vec<T>,
+    ) -> Result<bool, Failure> {
+        grow(stack, next + callee.frame as usize);
+        let first = base + call.arguments as usize;
+        let arguments = first..first + callee.n_inputs as usize;
+        let results = base + call.results as usize;
+        let function = call.function;
+        if self.recall(functions, function, stack, arguments.clone(), results) {
+            return Ok(false);
+        }
+        if let Some(derivative) = &callee.derivative {
+            let arguments = arguments.clone();
+            if T::differentiate(self, functions, function, derivative, stack, arguments, results)? {
+                return Ok(false);
+            }
+        }
+        stack.copy_within(arguments, next);
+        Ok(true)
+    }
+
+    /// Ends a call of a function whose frame begins at `base`: its results go to the caller.
+    fn end<T: Differentiate>(
+        &mut self,
+        (functions, function, base): (&Functions, u32, usize),
+        caller: Caller,
+        stack: &mut [T],
+    ) {
+        let code = &functions.codes[function as usize];
+        let first = base + code.outputs as usize;
+        let outputs = first..first + code.n_outputs as usize;
+        self.keep(functions, function, caller, stack, outputs.clone());
+        stack.copy_within(outputs, (caller.base + caller.results) as usize);
+    }
+
+    /// What registers hold that nothing was assigned to.
+    fn value_of_unassigned(&self) -> f64 {
+        if self.has_defaults { 0.0 } else { f64::NAN }
+    }
+
+    /// Runs one frame up to the end or to a call, by machine code as far as there is any; `at` is the
+    /// position after the last instruction run, 0 before the first.
+    fn advance<T: Differentiate>(
+        &mut self,
+        (functions, code): (&Functions, &Code),
+        at: &mut usize,
+        base: usize,
+        stack: &mut Vec<T>,
+    ) -> Result<Option<MachineRequest>, Reason> {
+        let unassigned = self.value_of_unassigned();
+        let mut has_constants = *at > 0;
+        loop {
+            let machine_code = code.machine_code.get(T::PARTS - 1);
+            let next = machine_code.map_or(Next::Everything, |machine_code| {
+                let call = direct_calls::call::<Machine, T>;
+                machine_code.next(code.instructions.len(), || translated(functions, code, call))
+            });
+            if let Next::MachineCode(translated) = next {
+                if !has_constants && translated.reads_constants() {
+                    enter(code, stack, base);
+                    has_constants = true;
+                }
+                *at = direct_calls::run(translated, (self, functions), stack, (base, *at));
+                if *at >= code.instructions.len() || self.failure.is_some() {
+                    return Ok(None);
+                }
+            }
+            if !has_constants {
+                enter(code, stack, base);
+                has_constants = true;
+            }
+            let frame = &mut stack[base..];
+            let (Next::AtMost(instructions), Some(machine_code)) = (next, machine_code) else {
+                return execute(code, at, frame, unassigned, &mut self.budget, 0);
+            };
+            let (first, before) = (*at, self.budget);
+            let pause = before.saturating_sub(instructions);
+            let request = execute(code, at, frame, unassigned, &mut self.budget, pause);
+            machine_code.count(before - self.budget + at.saturating_sub(first) as u64);
+            if !matches!(request, Ok(Some(MachineRequest::Pause))) {
+                return request;
+            }
+        }
+    }
+}
+
+impl<T: Differentiate> MakesCalls<T> for Machine {
+    #[inline]
+    fn make_call(
+        &mut self,
+        functions: &Functions,
+        call: &Call,
+        at: u32,
+        (base, size): (usize, usize),
+        stack: &mut Vec<T>,
+    ) -> bool {
+        let callee = &functions.codes[call.function as usize];
+        let next = base + size;
+        let is_left = self.direct_calls >= MAX_DIRECT_CALLS || self.is_too_deep(callee, next);
+        if is_left || spend(&mut self.budget, at as usize + 1, 0).is_err() {
+            return false;
+        }
+        let caller = self.caller(call.function, at, base, call);
+        let result = match self.begin((functions, callee), call, (base, next), stack) {
+            Ok(true) => {
+                self.direct_calls += 1;
+                let result = self.run_at(functions, call.function, next, stack);
+                self.direct_calls -= 1;
+                result.map(|()| self.end((functions, call.function, next), caller, stack))
+            }
+            other => other.map(|_| ()),
+        };
+        self.failure = result.err();
+        self.failure.is_none()
+    }
+
+    fn unassigned(&self) -> f64 {
+        self.value_of_unassigned()
+    }
+
+    fn budget_mut(&mut self) -> &mut u64 {
+        &mut self.budget
     }
 }
 
@@ -425,14 +548,6 @@ pub(super) enum MachineRequest {
     Warning,
     /// To continue at the head of a loop after a number of instructions.
     Pause,
-}
-
-/// A call that a function requests.
-#[derive(Debug, PartialEq)]
-pub(super) struct Call {
-    function: u32,
-    arguments: u32,
-    results: u32,
 }
 
 /// Numbers whose derivatives another function may compute.
@@ -549,35 +664,6 @@ fn grow<T: Number>(stack: &mut Vec<T>, size: usize) {
 fn enter<T: Number>(code: &Code, stack: &mut [T], base: usize) {
     for (register, value) in &code.constants {
         stack[base + *register as usize] = T::constant(*value);
-    }
-}
-
-/// Runs one frame up to the end or to a call, by machine code as far as there is any; `at` is the
-/// position after the last instruction run.
-fn advance<T: Number>(
-    (functions, code): (&Functions, &Code),
-    at: &mut usize,
-    r: &mut [T],
-    unassigned: f64,
-    budget: &mut u64,
-) -> Result<Option<MachineRequest>, Reason> {
-    let Some(machine_code) = code.machine_code.get(T::PARTS - 1) else {
-        return execute(code, at, r, unassigned, budget, 0);
-    };
-    loop {
-        let length = code.instructions.len();
-        let translated = || translated::<T>(functions, code);
-        let next = machine_code.run((length, translated), at, r, unassigned, budget);
-        let Next::AtMost(instructions) = next else {
-            return execute(code, at, r, unassigned, budget, 0);
-        };
-        let (first, before) = (*at, *budget);
-        let pause = budget.saturating_sub(instructions);
-        let request = execute(code, at, r, unassigned, budget, pause);
-        machine_code.count(before - *budget + at.saturating_sub(first) as u64);
-        if !matches!(request, Ok(Some(MachineRequest::Pause))) {
-            return request;
-        }
     }
 }
 

@@ -2,13 +2,12 @@
 //!
 //! A function is interpreted until that took as long as its translation takes. Machine code works on
 //! the same frame as the interpreter and has every result in it at once, so that either continues
-//! where the other stopped: machine code leaves calls, and every instruction that fails, to the
-//! interpreter. Both give the same bits and take the same from the budget.
+//! where the other stopped: machine code leaves every instruction that fails to the interpreter. Both give the same bits and take the same from the budget.
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use crate::arithmetic::Number;
 use crate::jit::Executable;
+use std::ffi::c_void;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -24,37 +23,33 @@ pub(crate) struct MachineCode {
     translated: OnceLock<Option<Translated>>,
 }
 
-/// What is interpreted next.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) enum Next {
-    /// Whatever comes.
+/// What runs next.
+#[derive(Clone, Copy)]
+pub(super) enum Next<'a> {
+    /// The interpreter, whatever comes.
     Everything,
-    /// So many instructions: then the function is translated.
+    /// The interpreter for so many instructions: then the function is translated.
     AtMost(u64),
+    /// Machine code as far as it can.
+    MachineCode(&'a Translated),
 }
 
 impl MachineCode {
-    /// Runs as much as machine code can, of a function of so many instructions which is translated so;
-    /// says what the interpreter does then.
-    pub(super) fn run<T: Number>(
+    /// What runs next of a function of so many instructions, which is translated so.
+    pub(super) fn next(
         &self,
-        (length, translated): (usize, impl FnOnce() -> Option<Translated>),
-        at: &mut usize,
-        frame: &mut [T],
-        unassigned: f64,
-        budget: &mut u64,
-    ) -> Next {
-        let often = OFTEN * (length as u64).max(SHORT);
+        length: usize,
+        translated: impl FnOnce() -> Option<Translated>,
+    ) -> Next<'_> {
         if self.translated.get().is_none() {
+            let often = OFTEN * (length as u64).max(SHORT);
             let interpreted = self.interpreted.load(Ordering::Relaxed);
             if interpreted < often {
                 return Next::AtMost(often - interpreted);
             }
         }
-        if let Some(translated) = self.translated.get_or_init(translated) {
-            *at = translated.call(*at, frame, unassigned, budget);
-        }
-        Next::Everything
+        let translated = self.translated.get_or_init(translated).as_ref();
+        translated.map_or(Next::Everything, Next::MachineCode)
     }
 
     /// Counts instructions that were interpreted.
@@ -77,51 +72,71 @@ impl std::fmt::Debug for MachineCode {
     }
 }
 
-/// What the machine code is called as: the frame, what stands for no value, the budget and the number
-/// of the first instruction; the number of the instruction that it leaves to the interpreter.
-type Entry = unsafe extern "C" fn(*mut f64, f64, *mut u64, u64) -> u64;
+/// What the machine code is called as: the frame, what stands for no value, the budget, the number of
+/// the first instruction, and what [`direct_calls`](super::direct_calls) needs; the number of the
+/// instruction that it leaves to the interpreter.
+type Entry = unsafe extern "C" fn(*mut f64, f64, *mut u64, u64, *mut c_void) -> u64;
 
 /// A function in memory of its own.
 pub(super) struct Translated {
     entry: Entry,
-    /// How many numbers its frame has, of how many parts each.
-    frame: usize,
-    parts: usize,
+    layout: Layout,
     _code: Executable,
 }
 
+/// What the machine code of a function expects of its frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    /// How many numbers it has.
+    pub(super) frame: usize,
+    /// Of how many parts each.
+    pub(super) parts: usize,
+    /// Whether constants must be in it.
+    pub(super) reads_constants: bool,
+}
+
 impl Translated {
-    /// The function that begins at an address of the code, for frames of so many numbers of so many
-    /// parts.
+    /// The function that begins at an address of the code, for such frames.
     ///
     /// # Safety
-    /// It has the signature of [`Entry`], and reads and writes no more than such a frame and the budget.
-    pub(super) unsafe fn new(
-        code: Executable,
-        address: *const u8,
-        (frame, parts): (usize, usize),
-    ) -> Translated {
+    /// It has the signature of [`Entry`], reads and writes no more than such a frame and the budget, and
+    /// hands what it is given last to nothing but [`direct_calls::call`](super::direct_calls::call) for
+    /// numbers of so many parts.
+    pub(super) unsafe fn new(code: Executable, address: *const u8, layout: Layout) -> Translated {
         // SAFETY: the caller promises the signature; the code lives as long as the result, which keeps
         // it.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
-        Translated { entry, frame, parts, _code: code }
+        Translated { entry, layout, _code: code }
+    }
+
+    /// Whether constants must be in its frame.
+    pub(super) fn reads_constants(&self) -> bool {
+        self.layout.reads_constants
+    }
+
+    /// Asserts that a frame of so many numbers of so many parts has the registers of the function.
+    pub(super) fn check(&self, frame: usize, parts: usize) {
+        assert!(self.layout.frame <= frame, "the frame has the registers of the function");
+        assert_eq!(self.layout.parts, parts, "the numbers are those it was translated for");
     }
 
     /// Runs the function on a frame from an instruction on; the number of the instruction that it leaves
     /// to the interpreter.
-    pub(super) fn call<T: Number>(
+    ///
+    /// # Safety
+    /// The frame is as [`Translated::check`] asks for, the context that of
+    /// [`direct_calls`](super::direct_calls) for this frame, or null.
+    pub(super) unsafe fn enter(
         &self,
         at: usize,
-        frame: &mut [T],
+        frame: *mut f64,
         unassigned: f64,
-        budget: &mut u64,
+        budget: *mut u64,
+        context: *mut c_void,
     ) -> usize {
-        assert!(self.frame <= frame.len(), "the frame has the registers of the function");
-        assert_eq!(self.parts, T::PARTS, "the numbers are those it was translated for");
-        let frame = frame.as_mut_ptr().cast();
         // SAFETY: the frame is as large as the code takes it to be, of numbers whose parts are
         // contiguous.
-        let left = unsafe { (self.entry)(frame, unassigned, budget, at as u64) };
+        let left = unsafe { (self.entry)(frame, unassigned, budget, at as u64, context) };
         left as usize
     }
 }

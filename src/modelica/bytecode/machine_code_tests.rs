@@ -1,12 +1,13 @@
 //! Machine code and the interpreter agree to the bit.
 
 use super::super::code::{Code, Functions, Instruction};
+use super::super::direct_calls::call;
 use super::super::failure::Reason;
 use super::super::machine::{Machine, MachineRequest, execute};
 use super::super::translation::translated;
 use super::*;
 use crate::arithmetic::Elementary;
-use crate::arithmetic::{Dual, Operation, Operator};
+use crate::arithmetic::{Dual, Number, Operation, Operator};
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::find;
 use proptest::prelude::*;
@@ -88,7 +89,10 @@ fn outcome<T: Number + std::fmt::Debug>(
 ) -> Outcome {
     let (mut at, mut budget, mut frame) = (0, BUDGET, frame.to_vec());
     if let Some(translated) = translated {
-        at = translated.call(at, &mut frame, f64::NAN, &mut budget);
+        translated.check(frame.len(), T::PARTS);
+        let (first, budget) = (frame.as_mut_ptr().cast(), &raw mut budget);
+        // SAFETY: the frame has the registers of the function; no function is called.
+        at = unsafe { translated.enter(at, first, f64::NAN, budget, std::ptr::null_mut()) };
     }
     let request = execute(code, &mut at, &mut frame, f64::NAN, &mut budget, 0);
     let parts = frame.iter().flat_map(parts_of);
@@ -110,13 +114,13 @@ proptest! {
     ) {
         let functions = function(&draws);
         let code = &functions.codes[0];
-        let on_values = translated::<f64>(&functions, code).expect("all can be translated");
+        let on_values = translated::<f64>(&functions, code, call::<Machine, f64>).expect("all can be translated");
         let own = |x: &f64| vec![*x];
         prop_assert_eq!(
             outcome(Some(&on_values), code, &values, own),
             outcome(None, code, &values, own)
         );
-        let on_duals = translated::<Dual<f64>>(&functions, code).expect("all can be translated");
+        let on_duals = translated(&functions, code, call::<Machine, Dual<f64>>).expect("all can be translated");
         let duals: Vec<Dual<f64>> =
             values.iter().zip(&tangents).map(|(v, d)| Dual { v: *v, d: *d }).collect();
         let both = |x: &Dual<f64>| vec![x.v, x.d];
@@ -179,5 +183,60 @@ fn a_function_becomes_machine_code_while_it_runs() {
             [0, 1].map(|parts| matches!(code.machine_code[parts].translated.get(), Some(Some(_))))
         };
         assert_eq!(is_translated(&functions.codes[0]), [n > 10; 2]);
+    }
+}
+
+/// `f(n, x) = if n < 1 then sqrt(x) else f(n - 1, x - 1) + f(n - 1, x)`.
+fn a_recursion() -> Functions {
+    // n 0, x 1, f 2, 1 3, condition 4, arguments 5 and 6, results 7 and 8
+    let call = |d| Instruction::Call { function: 0, d, a: 5 };
+    let instructions = vec![
+        Operation::binary(Operator::Relation(RelationOperator::Less), 4, 0, 3).into(),
+        Instruction::JumpUnless { a: 4, target: 4 },
+        Operation::unary(Operator::Unary(elementary("sqrt")), 2, 1).into(),
+        Instruction::Jump { target: 10 },
+        Operation::binary(Operator::Sub, 5, 0, 3).into(),
+        Operation::binary(Operator::Sub, 6, 1, 3).into(),
+        call(7),
+        Instruction::Move { d: 6, a: 1, n: 1 },
+        call(8),
+        Operation::binary(Operator::Add, 2, 7, 8).into(),
+    ];
+    let code = Code {
+        instructions,
+        n_inputs: 2,
+        outputs: 2,
+        n_outputs: 1,
+        frame: 9,
+        constants: vec![(3, 1.0)],
+        ..Code::default()
+    };
+    Functions { codes: vec![code], ..Functions::default() }
+}
+
+#[test]
+fn machine_code_calls_as_the_interpreter_does() {
+    let translated = a_recursion();
+    let mut machine = Machine::default();
+    for _ in 0..4 {
+        machine.call(&translated, 0, [12.0, 20.0].into_iter()).expect("a value");
+        machine.partial(&translated, 0, &[1], [12.0, 20.0].into_iter()).expect("a derivative");
+    }
+    for machine_code in &translated.codes[0].machine_code {
+        assert!(matches!(machine_code.translated.get(), Some(Some(_))));
+    }
+    // The third fails in a call 12 deep; the fourth is nested too deep.
+    for arguments in [[3.0, 7.0], [11.0, 20.0], [12.0, 11.5], [3_000.0, 9_000.0]] {
+        // A new machine has a stack that grows while machine code runs.
+        let outcome = |functions: &Functions| {
+            let mut machine = Machine::default();
+            let value = machine.call(functions, 0, arguments.into_iter()).map(|y| y[0]);
+            let spent = machine.spent();
+            let partial = machine.partial(functions, 0, &[1], arguments.into_iter()).map(|y| y[0]);
+            (value, spent, partial, machine.spent())
+        };
+        let interpreted = a_recursion();
+        assert_eq!(outcome(&translated), outcome(&interpreted));
+        assert!(interpreted.codes[0].machine_code[0].translated.get().is_none());
     }
 }

@@ -15,7 +15,12 @@
 //! A register that nothing was assigned to holds NaN; a decision by it fails, and so does returning
 //! it.
 
+#[cfg(feature = "jit")]
+mod angles;
 mod code;
+#[cfg(feature = "jit")]
+mod constants;
+mod direct_calls;
 mod external;
 mod failure;
 mod kinks;

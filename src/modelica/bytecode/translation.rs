@@ -6,11 +6,14 @@
 
 #![allow(unsafe_code, reason = "machine code hands over registers as pointers")]
 
+use super::angles::{OfAngle, of_angle, shared};
 use super::code::{Code, Functions, Instruction};
-use super::machine_code::Translated;
+use super::constants::{constants_of, reads_constants};
+use super::direct_calls::{Call, MakeCall, Packed};
+use super::machine_code::{Layout, Translated};
 use super::range::iterations;
 use crate::arithmetic::translation::{Operand, Translator, is_true, sum};
-use crate::arithmetic::{Number, Operation, Register};
+use crate::arithmetic::{Number, Operation, Operator, Register};
 use crate::jit::{self, Effort};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
@@ -19,52 +22,69 @@ use cranelift_codegen::ir::{
 };
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch, Variable};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// Longer rows of registers are copied and filled by a function of this process.
 const SHORT_ROW: u32 = 8;
 
-/// Instructions beyond which the time of a translation matters more than the best code.
+/// Instructions beyond which the time of a translation matters more than the best code. Longer functions
+/// leave calls to the interpreter: they may take much of the stack of the thread.
 const LONG: usize = 3_000;
 /// Longer functions are not translated: the time that it takes is more than linear.
 const LONGEST: usize = 100_000;
 
-/// The machine code of one of the functions for a kind of number, if it can have any.
-pub(super) fn translated<T: Number>(functions: &Functions, code: &Code) -> Option<Translated> {
+/// The machine code of one of the functions for a kind of number, if it can have any; with what it calls
+/// to make calls.
+pub(super) fn translated<T: Number>(
+    functions: &Functions,
+    code: &Code,
+    call: MakeCall<T>,
+) -> Option<Translated> {
     let length = code.instructions.len();
     if jit::is_interpreted() || length > LONGEST || !functions.is_valid(code) {
         return None;
     }
     let effort = if length <= LONG { Effort::Best } else { Effort::Quick };
     let mut executable = jit::Code::new(effort)?;
-    let translate = |target, context: &mut _| translate((code, T::PARTS), target, context);
+    let call = (length <= LONG).then_some(call as *const () as usize);
+    let translate =
+        |target, context: &mut _| translate((functions, code), (T::PARTS, call), target, context);
     let id = executable.define("function", translate)?;
     let executable = executable.finish()?;
     let address = executable.address(id)?;
+    let layout = Layout {
+        frame: code.frame as usize,
+        parts: T::PARTS,
+        reads_constants: reads_constants(functions, code, SHORT_ROW),
+    };
     // SAFETY: `translate` makes the signature. Registers that instructions name are in the frame, as was
     // checked above; the code itself checks those that offsets lead to.
-    Some(unsafe { Translated::new(executable, address, (code.frame as usize, T::PARTS)) })
+    Some(unsafe { Translated::new(executable, address, layout) })
 }
 
 /// Writes the code of a function for numbers of one part (values) or two (with a derivative) into a
-/// context.
+/// context; it makes calls by the function of this process at an address, if there is one.
 fn translate(
-    (code, parts): (&Code, usize),
+    (functions, code): (&Functions, &Code),
+    (parts, call): (usize, Option<usize>),
     target: TargetFrontendConfig,
     context: &mut Context,
 ) -> Option<()> {
     let pointer = target.pointer_type();
     let signature = &mut context.func.signature;
-    signature.params.extend([pointer, types::F64, pointer, types::I64].map(AbiParam::new));
+    signature.params.extend([pointer, types::F64, pointer, types::I64, pointer].map(AbiParam::new));
     signature.returns.push(AbiParam::new(types::I64));
     let mut workspace = FunctionBuilderContext::new();
     let mut builder = FunctionBuilder::new(&mut context.func, &mut workspace);
     let start = builder.create_block();
     builder.append_block_params_for_function_params(start);
     builder.switch_to_block(start);
+    let frame = builder.declare_var(pointer);
     let given = builder.block_params(start);
-    let (frame, unassigned, budget_address, first) = (given[0], given[1], given[2], given[3]);
+    let (unassigned, budget_address, first, caller) = (given[1], given[2], given[3], given[4]);
+    let first_frame = given[0];
+    builder.def_var(frame, first_frame);
     let left = builder.create_block();
     builder.append_block_param(left, types::I64);
     let budget = builder.declare_var(types::I64);
@@ -82,8 +102,13 @@ fn translate(
         budget_address,
         budget,
         left,
+        caller,
+        call,
         operations: translator,
         callees,
+        constants: constants_of(functions, code),
+        shared_angles: shared(functions, code),
+        angle: None,
         blocks: BTreeMap::new(),
         known: FxHashMap::default(),
     };
@@ -106,6 +131,8 @@ struct Callees {
     lacks: SigRef,
     /// [`iterations_of`].
     iterations: SigRef,
+    /// [`MakeCall`].
+    call: SigRef,
 }
 
 impl Callees {
@@ -123,6 +150,7 @@ impl Callees {
             fill: import(&[pointer, pointer, number, pointer], None),
             lacks: import(&[pointer; 3], Some(types::I64)),
             iterations: import(&[pointer; 2], Some(number)),
+            call: import(&[pointer, pointer, types::I64, types::I64, types::I64], Some(pointer)),
         }
     }
 }
@@ -162,14 +190,24 @@ struct Translation<'a> {
     code: &'a Code,
     parts: usize,
     pointer: Type,
-    frame: Value,
+    /// Where the frame is: the stack may move when a function is called.
+    frame: Variable,
     unassigned: Value,
     budget_address: Value,
     budget: Variable,
     /// Writes the budget back and returns the number of an instruction.
     left: Block,
+    /// What calls of functions need, and the address of the function that makes them.
+    caller: Value,
+    call: Option<usize>,
     operations: Translator,
     callees: Callees,
+    /// Registers that always hold the same number.
+    constants: FxHashMap<Register, f64>,
+    /// Instructions that compute the sine or the cosine of an angle whose other one follows.
+    shared_angles: FxHashSet<usize>,
+    /// The last such angle since the block began, with its sine and cosine.
+    angle: Option<(Value, [Value; 2])>,
     /// Where code begins that a jump leads to or that is entered.
     blocks: BTreeMap<usize, Block>,
     /// What registers hold since the block began.
@@ -222,7 +260,7 @@ impl Translation<'_> {
                 // Nothing leads here.
                 let block = self.builder.create_block();
                 self.builder.switch_to_block(block);
-                self.known.clear();
+                self.forget();
             }
             return;
         };
@@ -230,7 +268,7 @@ impl Translation<'_> {
             self.builder.ins().jump(block, &[]);
         }
         self.builder.switch_to_block(block);
-        self.known.clear();
+        self.forget();
     }
 
     /// Whether the last instruction was a jump.
@@ -254,13 +292,20 @@ impl Translation<'_> {
         self.builder.ins().jump(self.left, &[number.into()]);
     }
 
+    /// Forgets what registers hold.
+    fn forget(&mut self) {
+        self.known.clear();
+        self.angle = None;
+    }
+
     fn offset(&self, register: Register) -> i32 {
         (8 * self.parts * register as usize) as i32
     }
 
     fn address(&mut self, register: Register) -> Value {
         let offset = i64::from(self.offset(register));
-        self.builder.ins().iadd_imm_s(self.frame, offset)
+        let frame = self.builder.use_var(self.frame);
+        self.builder.ins().iadd_imm_s(frame, offset)
     }
 
     fn read(&mut self, from: Value, offset: i32) -> Operand {
@@ -283,13 +328,23 @@ impl Translation<'_> {
         if let Some(operand) = self.known.get(&register) {
             return *operand;
         }
-        let operand = self.read(self.frame, self.offset(register));
+        let operand = match self.constants.get(&register).copied() {
+            Some(value) => {
+                let value = self.builder.ins().f64const(value);
+                self.constant(value)
+            }
+            None => {
+                let frame = self.builder.use_var(self.frame);
+                self.read(frame, self.offset(register))
+            }
+        };
         self.known.insert(register, operand);
         operand
     }
 
     fn set(&mut self, d: Register, operand: Operand) {
-        self.write(operand, self.frame, self.offset(d));
+        let frame = self.builder.use_var(self.frame);
+        self.write(operand, frame, self.offset(d));
         self.known.insert(d, operand);
     }
 
@@ -334,7 +389,7 @@ impl Translation<'_> {
                 let place = self.place(base, offset, at);
                 let operand = self.get(a);
                 self.write(operand, place, 0);
-                self.known.clear();
+                self.forget();
             }
             Instruction::Iterations { d, range } => self.iterations(d, range, at),
             Instruction::Jump { target } => {
@@ -344,7 +399,10 @@ impl Translation<'_> {
                 self.builder.ins().jump(block, &[]);
             }
             Instruction::JumpUnless { a, target } => self.jump_unless(a, target, at),
-            Instruction::Call { .. } | Instruction::External { .. } => self.leave(at),
+            Instruction::Call { function, d, a } => {
+                self.call_function(&Call { function, arguments: a, results: d }, at);
+            }
+            Instruction::External { .. } => self.leave(at),
             Instruction::Check { a, n } => self.check(a, n, at),
             Instruction::Finite { a } => {
                 let value = self.get(a).v;
@@ -358,6 +416,27 @@ impl Translation<'_> {
         }
     }
 
+    /// Calls another function, and continues on the frame that is then given back; leaves the call to the
+    /// interpreter if there is none.
+    fn call_function(&mut self, call: &Call, at: usize) {
+        let Some(callee) = self.call else { return self.leave(at) };
+        let before = self.builder.use_var(self.budget);
+        let flags = MemFlagsData::trusted();
+        self.builder.ins().store(flags, before, self.budget_address, 0);
+        let packed = Packed::new(call, at as u32);
+        let frame = self.builder.use_var(self.frame);
+        let numbers = [packed.function_and_place, packed.registers, u64::from(self.code.frame)];
+        let numbers = numbers.map(|n| self.builder.ins().iconst(types::I64, n as i64));
+        let arguments = [&[self.caller, frame], numbers.as_slice()].concat();
+        let frame = self.call(callee, self.callees.call, &arguments);
+        let after = self.builder.ins().load(types::I64, flags, self.budget_address, 0);
+        self.builder.def_var(self.budget, after);
+        let is_made = self.builder.ins().icmp_imm_s(IntCC::NotEqual, frame, 0);
+        self.go_on_if(is_made, at);
+        self.builder.def_var(self.frame, frame);
+        self.forget();
+    }
+
     /// Sets the value of an operation, whose operands must have values and which must be finite where
     /// the interpreter asks for it.
     fn operation(&mut self, operation: Operation, at: usize) {
@@ -367,11 +446,33 @@ impl Translation<'_> {
             let have_values = self.builder.ins().fcmp(FloatCC::Ordered, a.v, b.v);
             self.go_on_if(have_values, at);
         }
-        let result = self.operations.operation(&mut self.builder, operator, a, b);
+        let result = match self.of_shared_angle(operator, a, at) {
+            Some(v) => Operand { v, d: None },
+            None => self.operations.operation(&mut self.builder, operator, a, b),
+        };
         if operator.may_fail() {
             self.go_on_if_finite(result.v, at);
         }
         self.set(d, result);
+    }
+
+    /// The sine or cosine of a value, where the other is known or is computed with it.
+    fn of_shared_angle(&mut self, operator: Operator, a: Operand, at: usize) -> Option<Value> {
+        let of_angle = of_angle(operator).filter(|_| a.d.is_none())?;
+        let known = self.angle.filter(|(angle, _)| *angle == a.v).map(|(_, both)| both);
+        let [sine, cosine] = match known {
+            Some(both) => both,
+            None if self.shared_angles.contains(&at) => {
+                let both = self.operations.sine_and_cosine(&mut self.builder, a.v);
+                self.angle = Some((a.v, both));
+                both
+            }
+            None => return None,
+        };
+        Some(match of_angle {
+            OfAngle::Sine => sine,
+            OfAngle::Cosine => cosine,
+        })
     }
 
     fn number(&mut self, number: usize) -> Value {
@@ -494,7 +595,7 @@ impl Translation<'_> {
         let (first, n, parts) = (self.address(d), self.number(n as usize), self.number(self.parts));
         let arguments = [first, n, self.unassigned, parts];
         self.call_for_effect(fill_row as *const () as usize, self.callees.fill, &arguments);
-        self.known.clear();
+        self.forget();
     }
 
     fn copy(&mut self, d: Register, a: Register, n: u32) {
@@ -507,7 +608,7 @@ impl Translation<'_> {
         let parts = self.parts * n as usize;
         let arguments = [self.address(a), self.address(d), self.number(parts)];
         self.call_for_effect(copy_row as *const () as usize, self.callees.copy, &arguments);
-        self.known.clear();
+        self.forget();
     }
 
     fn finish(mut self, target: TargetFrontendConfig) {

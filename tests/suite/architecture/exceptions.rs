@@ -30,7 +30,6 @@ const IN_ORDER: &str = "steps in their order that share many values";
 
 /// Functions of more than 60 lines: file, name, reason.
 pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
-    ("modelica/bytecode/machine.rs", "run_at", PER_CASE),
     ("modelica/bytecode/machine.rs", "execute", PER_CASE),
     ("modelica/codegen/compilation.rs", "relations", IN_ORDER),
     ("modelica/codegen/event_code.rs", "compile_events", IN_ORDER),
