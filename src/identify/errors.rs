@@ -33,6 +33,9 @@ codes! {
     /// More searches of a script than are reported (a note).
     SEVERAL_SEARCHES = "several-searches":
         "## What it means\n\nWhat a generation compares, the model and the measured points, says which search it belongs to; each search has a report of its own, because fitness values of different data cannot be compared. This script has more searches than are reported.\n\n## Example\n\nA loop that fits a model to each of 1000 simulated data sets, or measured points that change in each generation.\n\n## What to do\n\nNothing, if the script prints what it finds. A report of each search is written where each has a script of its own, or reads its data by `Exp_Adq_SISO`.",
+    /// Results of a search that the script does not make any more (a note).
+    EARLIER_RESULTS = "earlier-results":
+        "## What it means\n\nThe folder of the results has a folder of a further search that an earlier run of the script has made, and this run has not. It is left as it is.\n\n## Example\n\nA script that fitted two data sets and now fits one: `run-2` is of the run before.\n\n## What to do\n\nRemove the folder, or keep it elsewhere.",
     /// Ranks of one job that do not fit each other.
     RANKS_DIFFER = "ranks-differ":
         "## What it means\n\nThe processes of an MPI job run different versions of the program, or one of them cannot make the simulator that rank 0 has sent. The message names the rank and its machine.\n\n## Example\n\nAn older `gapi` in the search path of one machine.\n\n## What to do\n\nStart the same program file on all machines, for example by its full path on a shared file system.",

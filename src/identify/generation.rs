@@ -1,4 +1,4 @@
-//! The individuals simulated since the last generation ended, experiment by experiment.
+//! The individuals simulated since their searches ended a generation, by what they are compared with.
 //!
 //! Every individual that `Eval` simulates has a number, which its row carries as a mark to `Fit`,
 //! whatever order the script calls in and however it puts the rows together. Rows that a script copies
@@ -9,13 +9,15 @@ use super::fitness::sum_of_squares;
 use super::search_record::Failures;
 use super::study::{Compared, Measurement, Study};
 use crate::ga::Genomes;
-use rustc_hash::{FxHashMap, FxHasher};
+use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
 use std::hash::Hasher as _;
 use std::sync::Arc;
 
-/// Individuals that were left over by generations that have ended, and may be of the next one of
-/// another search. Those of ten models with populations of 1000 are as many.
-const LEFT_OVER: usize = 10_000;
+/// Generations that end without an individual before it is forgotten: a script may simulate the
+/// populations of as many searches before it sorts the first.
+const WAITS: u32 = 40;
+/// Individuals that wait. Those of ten models with populations of 1000 are as many.
+const WAITING: usize = 10_000;
 
 /// Simulations of one generation.
 #[derive(Debug, Clone, Default)]
@@ -53,20 +55,26 @@ pub struct Target {
     pub measured: Option<Vec<f64>>,
 }
 
-/// Simulations of one model at the same points.
+/// Simulations of one model at the same points, which `Fit` has compared with the same measured
+/// values, or with none so far.
 #[derive(Debug, Clone)]
 struct Simulations {
-    study: Arc<Study>,
-    x: Vec<f64>,
-    genomes: Vec<Vec<f64>>,
-    rows: Vec<Vec<f64>>,
-    /// The numbers of the individuals, ascending.
-    numbers: Vec<u64>,
-    /// The measured values that `Fit` compared with, and which individuals it got.
-    ratings: Vec<(Vec<f64>, Vec<bool>)>,
-    tally: Tally,
-    /// Whether a generation has ended since without them.
-    left_over: bool,
+    target: Target,
+    /// With ascending numbers.
+    individuals: Vec<Individual>,
+}
+
+#[derive(Debug, Clone)]
+struct Individual {
+    number: u64,
+    genome: Vec<f64>,
+    row: Vec<f64>,
+    /// Why the simulation failed.
+    cause: Option<String>,
+    /// Whether it is counted elsewhere: `Fit` has compared it with several series.
+    is_copy: bool,
+    /// Generations that have ended since without it.
+    waited: u32,
 }
 
 /// A series that individuals are compared with.
@@ -83,52 +91,83 @@ impl Generation {
 
     /// Forgets all individuals.
     pub fn clear(&mut self) {
-        let own = std::mem::take(&mut self.experiments);
-        own.iter().for_each(|one| self.loose.add(&one.tally));
+        self.drop_where(|_| true);
     }
 
     /// All that was simulated here.
     pub fn tally(&self) -> Tally {
         let mut all = self.loose.clone();
-        self.experiments.iter().for_each(|own| all.add(&own.tally));
+        self.experiments.iter().for_each(|own| all.add(&own.tally()));
         all
     }
 
-    /// The generation that these experiments make, taken out of this one, with what belongs to none.
-    pub fn take(&mut self, experiments: &[usize]) -> Generation {
+    /// Takes the simulations that are of one of these targets out of the count.
+    pub fn take_tally_of(&mut self, targets: &[Target]) -> Tally {
+        let mut all = Tally::default();
+        for own in self.experiments.iter_mut().filter(|own| targets.contains(&own.target)) {
+            all.add(&own.tally());
+            own.individuals.clear();
+        }
+        self.experiments.retain(|own| !own.individuals.is_empty());
+        all
+    }
+
+    /// The generation that these experiments make, taken out of this one, with what belongs to none:
+    /// of each experiment as many individuals as there are in the population, all where it is not
+    /// known.
+    pub fn take(&mut self, experiments: &[usize], population: Option<&[Vec<f64>]>) -> Generation {
         let mut own =
             Generation { loose: std::mem::take(&mut self.loose), ..Generation::default() };
-        let mut place = 0;
-        own.experiments.extend(self.experiments.extract_if(.., |_| {
-            place += 1;
-            experiments.contains(&(place - 1))
-        }));
+        for &place in experiments {
+            let known = &mut self.experiments[place];
+            let mut left = population.map(counts);
+            let taken = known.individuals.extract_if(.., |one| match &mut left {
+                None => true,
+                Some(left) => left
+                    .get_mut(&key(&one.genome))
+                    .is_some_and(|count| *count > 0 && std::mem::replace(count, *count - 1) > 0),
+            });
+            let individuals = taken.collect();
+            own.experiments.push(Simulations { target: known.target.clone(), individuals });
+        }
+        self.experiments.retain(|own| !own.individuals.is_empty());
         own
     }
 
     /// A generation of these individuals has ended. What was simulated of some of them was a check;
-    /// the rest may be of another search, until the same is simulated again.
+    /// the rest may be of another search.
     pub fn leave(&mut self, individuals: &[Vec<f64>]) {
-        let count = individuals.len();
-        let mut known: Vec<u64> = individuals.iter().map(|genome| key(genome)).collect();
-        known.sort_unstable();
-        self.drop_where(|own| own.genomes.len() < count && own.are_among(&known));
-        self.experiments.iter_mut().for_each(|own| own.left_over = true);
-        while self.size() > LEFT_OVER {
-            let mut is_first = true;
-            self.drop_where(|_| std::mem::take(&mut is_first));
+        let known: FxHashSet<u64> = individuals.iter().map(|genome| key(genome)).collect();
+        let is_check = |own: &Simulations| {
+            own.individuals.len() < individuals.len()
+                && own.individuals.iter().all(|one| known.contains(&key(&one.genome)))
+        };
+        let checks = self.experiments.extract_if(.., |own| is_check(own));
+        checks.for_each(|own| self.loose.add(&own.tally()));
+        for own in &mut self.experiments {
+            own.individuals.iter_mut().for_each(|one| one.waited += 1);
+        }
+        for waits in (1..=WAITS).rev() {
+            self.drop_where(|one| one.waited > waits);
+            if self.size() <= WAITING {
+                break;
+            }
         }
     }
 
-    fn drop_where(&mut self, mut is_dropped: impl FnMut(&Simulations) -> bool) {
-        for own in self.experiments.extract_if(.., |own| is_dropped(own)) {
-            self.loose.add(&own.tally);
+    fn drop_where(&mut self, is_dropped: impl Fn(&Individual) -> bool) {
+        for own in &mut self.experiments {
+            let dropped: Vec<Individual> =
+                own.individuals.extract_if(.., |one| is_dropped(one)).collect();
+            self.loose.add(&tally(&dropped));
         }
+        self.experiments.retain(|own| !own.individuals.is_empty());
     }
 
-    /// The experiments that were simulated since the last generation ended.
-    fn fresh(&self) -> impl Iterator<Item = &Simulations> {
-        self.experiments.iter().filter(|own| !own.left_over)
+    /// Where the experiments are of which something was simulated since the last generation ended.
+    pub fn fresh_places(&self) -> Vec<usize> {
+        let places = self.experiments.iter().enumerate();
+        places.filter(|(_, own)| own.is_fresh()).map(|(place, _)| place).collect()
     }
 
     /// Groups of experiments whose sums of squares a script may add up: those with the same individuals,
@@ -158,7 +197,7 @@ impl Generation {
 
     /// Number of individuals of all experiments.
     pub fn size(&self) -> usize {
-        self.experiments.iter().map(|simulations| simulations.genomes.len()).sum()
+        self.experiments.iter().map(|own| own.individuals.len()).sum()
     }
 
     /// Adds what `Eval` has simulated; the individuals have the numbers from `first` on.
@@ -169,101 +208,123 @@ impl Generation {
         simulated: &Simulated,
         first: u64,
     ) {
-        self.drop_where(|known| known.left_over && known.is_of(study, x));
-        let known = self.experiments.iter().position(|known| known.is_of(study, x));
+        let target = Target { study: study.clone(), x: x.to_vec(), measured: None };
+        let rows = simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec);
+        let cause = |k: usize| {
+            let failed = simulated.failures.get(k)?.as_ref()?;
+            Some(failed.cause.to_string())
+        };
+        let one = |(k, (genome, row)): (usize, (&[f64], Vec<f64>))| Individual {
+            number: first + k as u64,
+            genome: genome.to_vec(),
+            row,
+            cause: cause(k),
+            is_copy: false,
+            waited: 0,
+        };
+        let individuals = genomes.rows().zip(rows).enumerate().map(one).collect();
+        self.put(target, individuals);
+    }
+
+    /// Adds individuals of a target, those that are not there yet.
+    fn put(&mut self, target: Target, individuals: Vec<Individual>) {
+        let known = self.experiments.iter().position(|own| own.target == target);
         let place = known.unwrap_or_else(|| {
-            self.experiments.push(Simulations::new(study.clone(), x.to_vec()));
+            self.experiments.push(Simulations { target, individuals: Vec::new() });
             self.experiments.len() - 1
         });
-        let own = &mut self.experiments[place];
-        own.tally.simulations += genomes.len() as u64;
-        for failure in simulated.failures.iter().flatten() {
-            own.tally.failures.note(&failure.cause);
+        let own = &mut self.experiments[place].individuals;
+        let last = own.last().map_or(0, |last| last.number);
+        let ascends = individuals.first().is_none_or(|first| first.number > last);
+        own.extend(individuals);
+        if !ascends {
+            own.sort_by_key(|one| one.number);
+            own.dedup_by_key(|one| one.number);
         }
-        own.numbers.extend((first..).take(genomes.len()));
-        own.genomes.extend(genomes.rows().map(<[f64]>::to_vec));
-        own.rows.extend(simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec));
-        let count = own.genomes.len();
-        own.ratings.iter_mut().for_each(|(_, rated)| rated.resize(count, false));
     }
 
     /// Adds the simulations of another one.
     pub fn append(&mut self, other: Generation) {
         self.loose.add(&other.loose);
-        for mut more in other.experiments {
-            match self.experiments.iter_mut().find(|own| own.is_of(&more.study, &more.x)) {
-                Some(own) => own.append(&mut more),
-                None => self.experiments.push(more),
-            }
+        for more in other.experiments {
+            self.put(more.target, more.individuals);
         }
     }
 
     /// The numbers of the individuals whose rows have the bits of this one.
     pub fn equal_to(&self, row: &[f64]) -> Vec<u64> {
-        let of_size = self.experiments.iter().filter(|own| own.x.len() == row.len());
-        let own = of_size.flat_map(|own| own.rows.iter().zip(&own.numbers));
-        own.filter(|(known, _)| same_bits(known, row)).map(|(_, number)| *number).collect()
+        let all = self.experiments.iter().flat_map(|own| &own.individuals);
+        let mut numbers: Vec<u64> =
+            all.filter(|one| same_bits(&one.row, row)).map(|one| one.number).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers
     }
 
     /// `Fit` has compared the individuals with these numbers with `measured`.
     pub fn rate(&mut self, numbers: impl Iterator<Item = u64>, measured: &[f64]) {
-        for number in numbers {
-            let found = self.experiments.iter_mut().find_map(|own| {
-                let place = own.numbers.binary_search(&number).ok()?;
-                Some((own, place))
-            });
-            if let Some((own, place)) = found {
-                own.note_rated(measured, place);
+        let numbers: FxHashSet<u64> = numbers.collect();
+        let mut rated: Vec<(Target, Vec<Individual>)> = Vec::new();
+        for own in &mut self.experiments {
+            let is_rated = |one: &Individual| numbers.contains(&one.number);
+            let individuals: Vec<Individual> = match &own.target.measured {
+                None => own.individuals.extract_if(.., |one| is_rated(one)).collect(),
+                Some(known) if known == measured => continue,
+                Some(_) => {
+                    let all = own.individuals.iter().filter(|one| is_rated(one));
+                    all.map(|one| Individual { is_copy: true, ..one.clone() }).collect()
+                }
+            };
+            if !individuals.is_empty() {
+                let measured = Some(measured.to_vec());
+                rated.push((Target { measured, ..own.target.clone() }, individuals));
             }
         }
+        self.experiments.retain(|own| !own.individuals.is_empty());
+        rated.into_iter().for_each(|(target, individuals)| self.put(target, individuals));
     }
 
     /// Whether individuals were simulated since the last generation ended, and `Fit` got all of them.
     pub fn is_rated(&self) -> bool {
-        self.fresh().next().is_some() && self.fresh().all(Simulations::is_rated)
+        let mut fresh = self.experiments.iter().filter(|own| own.is_fresh()).peekable();
+        fresh.peek().is_some() && fresh.all(|own| own.target.measured.is_some())
     }
 
     /// Whether `Fit` got any of them.
     pub(crate) fn has_ratings(&self) -> bool {
-        self.fresh().any(|simulations| !simulations.ratings.is_empty())
+        self.experiments.iter().any(|own| own.is_fresh() && own.target.measured.is_some())
     }
 
-    /// Whether this experiment has been simulated, and all its individuals compared.
-    pub(crate) fn has_rated(&self, study: &Study, x: &[f64]) -> bool {
-        self.fresh().any(|own| own.is_of(study, x) && own.is_rated())
+    /// Whether `Fit` got all of its individuals.
+    pub fn is_compared(&self) -> bool {
+        self.experiments.iter().all(|own| own.target.measured.is_some())
     }
 
-    /// The only experiment that was simulated since the last generation ended, where there is one
-    /// alone, and how many individuals it has.
-    pub fn only(&self, measurements: &[Measurement]) -> Option<(Target, usize)> {
-        let [place] = self.fresh_places()[..] else { return None };
-        let target = self.targets(&[place], measurements).pop()?;
-        Some((target, self.experiments[place].genomes.len()))
+    /// Whether this experiment has been simulated.
+    pub(crate) fn has_simulated(&self, study: &Study, x: &[f64]) -> bool {
+        self.experiments.iter().any(|own| own.is_fresh() && own.is_of(study, x))
     }
 
-    /// Where the experiments are that were simulated since the last generation ended.
-    pub fn fresh_places(&self) -> Vec<usize> {
-        let places = self.experiments.iter().enumerate();
-        places.filter(|(_, own)| !own.left_over).map(|(place, _)| place).collect()
+    /// The individuals compared with this that have larger numbers than `last`, as a generation of
+    /// their own, where they are so many.
+    pub fn take_rest(&mut self, target: &Target, last: u64, count: usize) -> Option<Generation> {
+        let own = self.experiments.iter_mut().find(|own| own.target == *target)?;
+        let is_later = |one: &Individual| one.number > last;
+        if own.individuals.iter().filter(|one| is_later(one)).count() != count {
+            return None;
+        }
+        let individuals = own.individuals.extract_if(.., |one| is_later(one)).collect();
+        let rest = Simulations { target: target.clone(), individuals };
+        Some(Generation { experiments: vec![rest], ..Generation::default() })
     }
 
-    /// What each series of these experiments compares.
+    /// What each of these experiments compares.
     pub fn targets(&self, experiments: &[usize], measurements: &[Measurement]) -> Vec<Target> {
         let one = |series: Series<'_>| Target {
-            study: series.simulations.study.clone(),
-            x: series.simulations.x.clone(),
             measured: series.measured.map(<[f64]>::to_vec),
+            ..series.simulations.target.clone()
         };
         self.series(experiments, measurements).into_iter().map(one).collect()
-    }
-
-    /// Of which experiment each series of these is.
-    pub fn experiments_of_series(&self, experiments: &[usize]) -> Vec<usize> {
-        let own = |&place: &usize| {
-            let count = self.experiments[place].ratings.len().max(1);
-            std::iter::repeat_n(place, count)
-        };
-        experiments.iter().flat_map(own).collect()
     }
 
     /// All experiments.
@@ -272,13 +333,20 @@ impl Generation {
     }
 
     /// The individuals of an experiment.
-    pub fn genomes(&self, experiment: usize) -> &[Vec<f64>] {
-        self.experiments.get(experiment).map_or(&[], |own| &own.genomes)
+    pub fn genomes(&self, experiment: usize) -> Vec<Vec<f64>> {
+        let own = self.experiments.get(experiment);
+        own.iter().flat_map(|own| &own.individuals).map(|one| one.genome.clone()).collect()
     }
 
     /// The individuals of all experiments.
     pub fn all_genomes(&self) -> impl Iterator<Item = &[f64]> {
-        self.experiments.iter().flat_map(|own| own.genomes.iter().map(Vec::as_slice))
+        self.experiments.iter().flat_map(|own| own.individuals.iter().map(|one| &*one.genome))
+    }
+
+    /// The smallest and the largest number.
+    pub fn numbers(&self) -> [u64; 2] {
+        let all = self.experiments.iter().flat_map(|own| own.individuals.iter());
+        all.fold([u64::MAX, 0], |[low, high], one| [low.min(one.number), high.max(one.number)])
     }
 
     /// Counts simulations that belong to no generation.
@@ -288,7 +356,7 @@ impl Generation {
 
     /// Whether all individuals are among those of `population`.
     pub fn is_part_of(&self, population: &[u64]) -> bool {
-        self.experiments.iter().all(|own| own.are_among(population))
+        self.all_genomes().all(|genome| population.binary_search(&key(genome)).is_ok())
     }
 
     /// The experiments that simulated the most of these individuals: one that simulated few of them
@@ -316,8 +384,8 @@ impl Generation {
             series.iter().map(|series| series.simulations.places()).collect();
         let sums = |genome: &Vec<f64>| -> Option<Vec<f64>> {
             let one = |(series, places): (&Series<'_>, &FxHashMap<u64, usize>)| {
-                let row = &series.simulations.rows[*places.get(&key(genome))?];
-                Some(sum_of_squares(row, series.measured?))
+                let own = &series.simulations.individuals[*places.get(&key(genome))?];
+                Some(sum_of_squares(&own.row, series.measured?))
             };
             series.iter().zip(&places).map(one).collect()
         };
@@ -332,11 +400,11 @@ impl Generation {
         measurements: &[Measurement],
     ) -> Vec<Compared> {
         let one = |series: &Series<'_>| {
-            let own = series.simulations;
+            let Simulations { target, individuals } = series.simulations;
             Some(Compared {
-                study: own.study.clone(),
-                x: own.x.clone(),
-                simulated: own.rows[own.place_of(genome)?].clone(),
+                study: target.study.clone(),
+                x: target.x.clone(),
+                simulated: individuals.iter().find(|one| one.genome == genome)?.row.clone(),
                 measured: series.measured.map(<[f64]>::to_vec),
                 file: series.file.unwrap_or_default().to_owned(),
             })
@@ -352,51 +420,37 @@ impl Generation {
         experiments: &[usize],
         measurements: &'a [Measurement],
     ) -> Vec<Series<'a>> {
-        let mut all = Vec::new();
-        for own in experiments.iter().map(|&k| &self.experiments[k]) {
-            let read = |y: &[f64]| {
-                let mut known = measurements.iter().rev().filter(|read| read.x == own.x);
-                known.find(|read| read.y == y).map(|read| read.file.as_str())
-            };
-            all.extend(own.ratings.iter().map(|(measured, _)| Series {
+        let one = |&place: &usize| {
+            let own = &self.experiments[place];
+            let given = own.target.measured.as_deref();
+            let mut known = measurements.iter().rev().filter(|read| read.x == own.target.x);
+            let read = known.find(|read| given.is_none_or(|given| read.y == given));
+            Series {
                 simulations: own,
-                measured: Some(measured),
-                file: read(measured),
-            }));
-            if own.ratings.is_empty() {
-                let known = measurements.iter().rev().find(|read| read.x == own.x);
-                all.push(Series {
-                    simulations: own,
-                    measured: known.map(|read| read.y.as_slice()),
-                    file: known.map(|read| read.file.as_str()),
-                });
+                measured: given.or(read.map(|read| read.y.as_slice())),
+                file: read.map(|read| read.file.as_str()),
             }
-        }
-        all
+        };
+        experiments.iter().map(one).collect()
     }
 }
 
 impl Simulations {
-    fn new(study: Arc<Study>, x: Vec<f64>) -> Simulations {
-        Simulations {
-            study,
-            x,
-            genomes: Vec::new(),
-            rows: Vec::new(),
-            numbers: Vec::new(),
-            ratings: Vec::new(),
-            tally: Tally::default(),
-            left_over: false,
-        }
+    fn is_of(&self, study: &Study, x: &[f64]) -> bool {
+        self.target.x == x && *self.target.study == *study
     }
 
-    /// Whether all individuals have one of these keys, which are sorted.
-    fn are_among(&self, population: &[u64]) -> bool {
-        self.genomes.iter().all(|genome| population.binary_search(&key(genome)).is_ok())
+    /// Whether something was simulated since the last generation ended.
+    fn is_fresh(&self) -> bool {
+        self.individuals.iter().any(|one| one.waited == 0)
+    }
+
+    fn tally(&self) -> Tally {
+        tally(&self.individuals)
     }
 
     fn sorted_keys(&self) -> Vec<u64> {
-        let mut keys: Vec<u64> = self.genomes.iter().map(|genome| key(genome)).collect();
+        let mut keys: Vec<u64> = self.individuals.iter().map(|one| key(&one.genome)).collect();
         keys.sort_unstable();
         keys.dedup();
         keys
@@ -404,53 +458,36 @@ impl Simulations {
 
     /// Whether it compares the same points with another model, or with a model that was changed.
     fn replaces(&self, known: &Simulations) -> bool {
-        let [own, other] =
-            [self, known].map(|one| one.ratings.iter().map(|(measured, _)| measured));
+        let [own, other] = [&self.target, &known.target];
         let is_changed =
-            self.study.model == known.study.model && self.study.changes != known.study.changes;
-        is_changed || self.x == known.x && !self.ratings.is_empty() && own.eq(other)
+            own.study.model == other.study.model && own.study.changes != other.study.changes;
+        let is_same = own.x == other.x && own.measured == other.measured;
+        is_changed || own.measured.is_some() && is_same
     }
 
-    fn is_of(&self, study: &Study, x: &[f64]) -> bool {
-        self.x == x && *self.study == *study
+    /// Where the individuals are; the last one of equal ones.
+    fn places(&self) -> FxHashMap<u64, usize> {
+        let all = self.individuals.iter().enumerate();
+        all.map(|(place, one)| (key(&one.genome), place)).collect()
     }
+}
 
-    fn is_rated(&self) -> bool {
-        let rated = |k: usize| self.ratings.iter().any(|(_, rated)| rated[k]);
-        !self.genomes.is_empty() && (0..self.genomes.len()).all(rated)
-    }
-
-    fn note_rated(&mut self, measured: &[f64], place: usize) {
-        let count = self.genomes.len();
-        let known = self.ratings.iter().position(|(known, _)| known == measured);
-        let rating = known.unwrap_or_else(|| {
-            self.ratings.push((measured.to_vec(), vec![false; count]));
-            self.ratings.len() - 1
-        });
-        self.ratings[rating].1[place] = true;
-    }
-
-    fn append(&mut self, more: &mut Simulations) {
-        let first = self.genomes.len();
-        self.tally.add(&more.tally);
-        self.genomes.append(&mut more.genomes);
-        self.rows.append(&mut more.rows);
-        self.numbers.append(&mut more.numbers);
-        let count = self.genomes.len();
-        self.ratings.iter_mut().for_each(|(_, rated)| rated.resize(count, false));
-        for (measured, rated) in &more.ratings {
-            let places = rated.iter().enumerate().filter(|(_, rated)| **rated);
-            places.for_each(|(place, _)| self.note_rated(measured, first + place));
+fn tally(individuals: &[Individual]) -> Tally {
+    let mut all = Tally::default();
+    for one in individuals.iter().filter(|one| !one.is_copy) {
+        all.simulations += 1;
+        if let Some(cause) = &one.cause {
+            all.failures.note(cause);
         }
     }
+    all
+}
 
-    fn place_of(&self, genome: &[f64]) -> Option<usize> {
-        self.genomes.iter().position(|known| known == genome)
-    }
-
-    fn places(&self) -> FxHashMap<u64, usize> {
-        self.genomes.iter().enumerate().map(|(place, genome)| (key(genome), place)).collect()
-    }
+/// How often each individual occurs.
+fn counts(population: &[Vec<f64>]) -> FxHashMap<u64, usize> {
+    let mut counts = FxHashMap::default();
+    population.iter().for_each(|genome| *counts.entry(key(genome)).or_insert(0) += 1);
+    counts
 }
 
 /// A number made of the bits.

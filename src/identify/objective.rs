@@ -39,6 +39,26 @@ impl Objective {
         if agrees { self } else { Objective::Script }
     }
 
+    /// Whether its values are determined by the sums of squares.
+    pub(super) fn is_function_of_sums(&self) -> bool {
+        matches!(self, Objective::SumOfSquares(_) | Objective::Root(_))
+    }
+
+    /// Whether these values are those of individuals with these sums of squares: of all that did not
+    /// fail, if there are any.
+    pub(super) fn explains(&self, sums: &[Vec<f64>], fitness: &[f64]) -> bool {
+        let good = informative(sums, fitness);
+        let (weights, is_root) = match self {
+            Objective::SumOfSquares(weights) => (weights, false),
+            Objective::Root(weights) => (weights, true),
+            Objective::Script | Objective::Assumed => return false,
+        };
+        let squared = |value: f64| if is_root { value * value } else { value };
+        let values: Vec<(&[f64], f64)> =
+            good.into_iter().map(|(sums, value)| (sums, squared(value))).collect();
+        !values.is_empty() && hold(weights, &values)
+    }
+
     /// That of these series, where the others do not count.
     pub(super) fn of_series(self, series: &[usize]) -> Objective {
         let own = |weights: Vec<f64>| series.iter().map(|&k| weights[k]).collect();
@@ -76,14 +96,7 @@ impl Objective {
 /// The objective that has the values `fitness` for individuals with these sums of squares:
 /// `sums[k]` has one entry for each series.
 pub fn recognized(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
-    let good: Vec<(&[f64], f64)> = sums
-        .iter()
-        .zip(fitness)
-        .filter(|(sums, fitness)| {
-            !sums.is_empty() && !has_failed(**fitness) && !sums.iter().any(|sum| has_failed(*sum))
-        })
-        .map(|(sums, fitness)| (sums.as_slice(), *fitness))
-        .collect();
+    let good = informative(sums, fitness);
     let Some(series) = good.first().map(|(sums, _)| sums.len()) else { return Objective::Script };
     if let Some(weights) = weights(&good, series) {
         return Objective::SumOfSquares(weights);
@@ -92,14 +105,31 @@ pub fn recognized(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
     weights(&squares, series).map_or(Objective::Script, Objective::Root)
 }
 
+/// The individuals whose fitness says something of what the script minimizes: those that did not fail.
+fn informative<'a>(sums: &'a [Vec<f64>], fitness: &[f64]) -> Vec<(&'a [f64], f64)> {
+    let all = sums.iter().zip(fitness);
+    let good = all.filter(|(sums, fitness)| {
+        !sums.is_empty() && !has_failed(**fitness) && !sums.iter().any(|sum| has_failed(*sum))
+    });
+    good.map(|(sums, fitness)| (sums.as_slice(), *fitness)).collect()
+}
+
+/// Whether any of these values says something of what the script minimizes.
+pub(super) fn is_informative(sums: &[Vec<f64>], fitness: &[f64]) -> bool {
+    !informative(sums, fitness).is_empty()
+}
+
+/// Whether the sums with these weights add up to the values.
+fn hold(weights: &[f64], values: &[(&[f64], f64)]) -> bool {
+    values.iter().all(|(sums, value)| {
+        let total: f64 = sums.iter().zip(weights).map(|(sum, weight)| sum * weight).sum();
+        (total - value).abs() <= SAME * value.abs()
+    })
+}
+
 /// The weights with which the sums add up to the values: all 1, else those of least squares.
 fn weights(values: &[(&[f64], f64)], series: usize) -> Option<Vec<f64>> {
-    let holds = |weights: &[f64]| {
-        values.iter().all(|(sums, value)| {
-            let total: f64 = sums.iter().zip(weights).map(|(sum, weight)| sum * weight).sum();
-            (total - value).abs() <= SAME * value.abs()
-        })
-    };
+    let holds = |weights: &[f64]| hold(weights, values);
     let ones = vec![1.0; series];
     if holds(&ones) {
         return Some(ones);

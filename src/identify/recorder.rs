@@ -12,7 +12,7 @@
 
 use super::Simulated;
 use super::generation::{self, Generation, Tally, Target};
-use super::objective::{Objective, recognized};
+use super::objective::{Objective, is_informative, recognized};
 use super::script_search::{Before, Ended, ScriptSearch};
 use super::search_ranges::SearchRanges;
 use super::seeds::Seeds;
@@ -23,6 +23,10 @@ use std::sync::Arc;
 /// Individuals of generations that may turn out to be parts of one: a population of 100 in the 36
 /// experiments of `scripts/humidity` has 3600.
 const PROVISIONAL: usize = 10_000;
+
+/// Calls of `Eval` before each of which the seeds are remembered; a search is found to be one when its
+/// first generation ends, whose individuals may have been simulated one by one.
+const SEEDS: usize = 200;
 
 /// Searches that keep individuals for their figures; a script that repeats a search for thousands of
 /// samples would fill the memory with them.
@@ -41,6 +45,8 @@ pub struct Recorder {
     generations: u64,
     /// Seconds, on the clock of the session, until the generation that ended last and until now.
     seconds: [f64; 2],
+    /// Those that had ended when data were read last.
+    generations_before_data: u64,
     /// What the user has changed for the generation that ends next.
     changes: Vec<String>,
     /// Whether operators were called since the last generation ended.
@@ -48,8 +54,8 @@ pub struct Recorder {
     ranges: SearchRanges,
     measurements: Vec<Measurement>,
     seeds: Seeds,
-    /// The seeds before the first simulation of the generation that ends next.
-    seeds_before: Option<Seeds>,
+    /// The seeds before the simulations from these numbers on.
+    seeds_before: Vec<(u64, Seeds)>,
     /// Individuals simulated in this run and those before it.
     numbered: u64,
     sorted_by_fit_order: bool,
@@ -59,8 +65,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
+    /// Whether data that are read now are of another run: a script that reads its data in each generation
+    /// has had one generation with those before.
+    pub fn begins_another_run(&self) -> bool {
+        self.generations > self.generations_before_data + 1
+    }
+
     /// `Exp_Adq_SISO` has read data.
     pub fn measured(&mut self, measurement: Measurement) {
+        self.generations_before_data = self.generations;
         self.measurements.push(measurement);
     }
 
@@ -81,11 +94,6 @@ impl Recorder {
     /// It is so late, in seconds since the run began.
     pub fn at(&mut self, seconds: f64) {
         self.seconds[1] = seconds;
-    }
-
-    /// Whether a generation has ended in this run.
-    pub fn has_generations(&self) -> bool {
-        self.generations > 0
     }
 
     /// All simulations of the run.
@@ -141,13 +149,15 @@ impl Recorder {
     ) -> u64 {
         let ends = !self.sorted_by_fit_order
             && self.pending.is_rated()
-            && self.pending.has_rated(study, x);
+            && self.pending.has_simulated(study, x);
         if ends {
             self.end_pending_generations();
         }
-        if self.seeds_before.is_none() {
-            self.seeds_before = Some(self.seeds.clone());
+        let first = self.numbered + 1;
+        if self.seeds_before.len() >= SEEDS {
+            self.seeds_before.remove(0);
         }
+        self.seeds_before.push((first, self.seeds.clone()));
         let own =
             self.searches.last().map_or(0, |search| search.observed.history.generations.len());
         if let Some(seed) = self.seeds.goes_on(own) {
@@ -158,7 +168,6 @@ impl Recorder {
         for failure in simulated.failures.iter().flatten() {
             self.tally.failures.note(&failure.cause);
         }
-        let first = self.numbered + 1;
         self.numbered += genomes.len() as u64;
         self.pending.add((study, x), genomes, simulated, first);
         first
@@ -183,9 +192,8 @@ impl Recorder {
 
     /// All individuals of a search have this fitness, such as those of `Refine`: a generation ends.
     pub fn refined(&mut self, population: &Genomes, fitness: &[f64]) {
-        if !std::mem::replace(&mut self.sorted_by_fit_order, true) {
-            self.take_back(population);
-        }
+        self.sorted_by_fit_order = true;
+        self.take_back(population);
         if self.pending.is_empty() || population.len() != fitness.len() {
             return;
         }
@@ -204,24 +212,26 @@ impl Recorder {
     /// What was simulated in place of these genes, which were not all simulated: a script that makes parameters of
     /// them, such as 10^g, simulates as many individuals, whose sums of squares are the fitness.
     fn simulated_instead(&self, genes: &[Vec<f64>], fitness: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let fresh = self.pending.fresh_places();
-        let simulated = self.pending.genomes(*fresh.first()?);
+        let simulated = self.pending.genomes(*self.pending.fresh_places().first()?);
         if simulated.len() != genes.len() || genes.iter().all(|own| simulated.contains(own)) {
             return None;
         }
-        let experiments = self.pending.covering(simulated);
-        let sums = self.pending.sums(&experiments, simulated, &self.measurements);
-        (recognized(&sums, fitness) != Objective::Script).then(|| simulated.to_vec())
+        let experiments = self.pending.covering(&simulated);
+        let sums = self.pending.sums(&experiments, &simulated, &self.measurements);
+        (recognized(&sums, fitness) != Objective::Script).then_some(simulated)
     }
 
     /// The run has ended or was interrupted: ends the generation that is complete; its searches.
     fn finished(mut self) -> Vec<ScriptSearch> {
         let not_shown = self.generations == 0 && !self.pending.has_ratings();
         let complete = self.pending.is_rated() && !self.sorted_by_fit_order;
-        let interrupted =
-            self.pending.is_rated() && self.sorted_by_fit_order && self.is_next_generation();
-        if !self.pending.is_empty() && (not_shown || complete || interrupted) {
+        if !self.pending.is_empty() && (not_shown || complete) {
             self.end_pending_generations();
+        }
+        for place in 0..self.searches.len() {
+            self.end_interrupted(place);
+            let search = &mut self.searches[place];
+            search.count(&self.pending.take_tally_of(&search.targets));
         }
         let rest = self.pending.tally();
         if self.searches.is_empty() && rest.simulations > 0 {
@@ -236,41 +246,47 @@ impl Recorder {
             let Some((low, high)) = search.spanned.clone() else { continue };
             self.ranges.assign(search, [low.as_slice(), high.as_slice()].into_iter());
         }
+        // Those that were taken for searches, and were parts of others.
+        self.searches.retain(|search| search.evaluations > 0);
         self.searches
     }
 
-    /// Whether what is pending may be a generation that was interrupted before `Fit_Order`, and not
-    /// a simulation for another purpose. What a script adds up is known by `Fit_Order` alone.
-    fn is_next_generation(&self) -> bool {
-        let Some((target, count)) = self.pending.only(&self.measurements) else { return false };
-        let Some(search) = self.searches.iter().rev().find(|own| own.targets == [target.clone()])
-        else {
-            return false;
-        };
-        let is_sum = |objective: &Objective| *objective == Objective::SumOfSquares(vec![1.0]);
-        count == search.generation_size && search.best().is_some_and(|best| is_sum(best.objective))
+    /// The last generation of a search, if the script has ended or was interrupted before `Fit_Order`: as
+    /// many individuals as in the one before, and no simulations for another purpose. What a script adds
+    /// up is known by `Fit_Order` alone.
+    fn end_interrupted(&mut self, place: usize) {
+        let search = &self.searches[place];
+        let is_sum = search.objective == Some(Objective::SumOfSquares(vec![1.0]));
+        let [target] = search.targets.as_slice() else { return };
+        if !is_sum || !self.sorted_by_fit_order || target.measured.is_none() {
+            return;
+        }
+        let (last, count) = (search.last_individual, search.generation_size);
+        let Some(part) = self.pending.take_rest(target, last, count) else { return };
+        self.end_unsorted(part, place);
     }
 
-    /// At the first `Fit_Order`: what was taken for generations before, because nothing sorted,
-    /// were individuals or experiments of this one.
+    /// At `Fit_Order`: what was taken for generations of a search before, because nothing sorted, were
+    /// individuals or experiments of this one.
     fn take_back(&mut self, population: &Genomes) {
         let mut known: Vec<u64> = population.rows().map(generation::key).collect();
         known.sort_unstable();
-        while let Some((part, place, before)) =
-            self.provisional.pop_if(|(part, ..)| part.is_part_of(&known))
-        {
-            let mut whole = part;
+        let mut kept: Vec<usize> = Vec::new();
+        for number in (0..self.provisional.len()).rev() {
+            let (part, place, _) = &self.provisional[number];
+            if kept.contains(place) {
+                continue;
+            }
+            if !part.is_part_of(&known) {
+                kept.push(*place);
+                continue;
+            }
+            let (mut whole, place, before) = self.provisional.remove(number);
             whole.append(std::mem::take(&mut self.pending));
             self.pending = whole;
             self.searches[place].take_back(before);
             self.generations -= 1;
-            if self.searches[place].observed.history.generations.is_empty() {
-                // The last one: those that began after it were taken back before.
-                self.searches.truncate(place);
-            }
         }
-        self.provisional = Vec::new();
-        self.current = self.searches.len().saturating_sub(1);
     }
 
     /// Generations that the script has not sorted, of one search or several: the sum over the series of
@@ -284,12 +300,20 @@ impl Recorder {
             let earlier: Vec<usize> = earlier.copied().collect();
             let now = |place: &usize| place - earlier.iter().filter(|gone| *gone < place).count();
             let places: Vec<usize> = group.iter().map(now).collect();
-            parts.push(self.pending.take(&places));
+            parts.push(self.pending.take(&places, None));
         }
         self.pending.clear();
         let evolves = std::mem::take(&mut self.evolves);
         for part in parts {
-            self.end_unsorted(part, evolves);
+            let targets = part.targets(&part.places(), &self.measurements);
+            let known = self.searches.iter().rposition(|search| search.compares(&targets));
+            let place = known.unwrap_or_else(|| self.begin_search(&targets, &part));
+            let before = self.searches[place].before();
+            self.evolves = evolves;
+            self.end_unsorted(part.clone(), place);
+            if !self.sorted_by_fit_order {
+                self.provisional.push((part, place, before));
+            }
         }
         while self.provisional.iter().map(|(part, ..)| part.size()).sum::<usize>() > PROVISIONAL {
             self.provisional.remove(0);
@@ -297,9 +321,9 @@ impl Recorder {
     }
 
     /// A generation that the script has not sorted.
-    fn end_unsorted(&mut self, part: Generation, evolves: bool) {
+    fn end_unsorted(&mut self, part: Generation, place: usize) {
         let experiments = part.places();
-        let individuals = part.genomes(0).to_vec();
+        let individuals = part.genomes(0);
         let sums = part.sums(&experiments, &individuals, &self.measurements);
         let total = |sums: &Vec<f64>| if sums.is_empty() { f64::NAN } else { sums.iter().sum() };
         let mut fitness: Vec<f64> = sums.iter().map(total).collect();
@@ -309,92 +333,106 @@ impl Recorder {
         for value in fitness.iter_mut().filter(|value| has_failed(**value)) {
             *value = crate::ga::FAILED_FITNESS;
         }
-        let targets = part.targets(&experiments, &self.measurements);
-        let objective = match part.has_ratings() && targets.len() == 1 {
+        let objective = match part.is_compared() && experiments.len() == 1 {
             true => Objective::SumOfSquares(vec![1.0]),
             false => Objective::Assumed,
         };
-        let place = self.search_that_compares(&targets);
-        let before = self.searches[place].before();
-        self.evolves = evolves;
+        let known = self.searches[place].objective.as_ref();
+        let objective = objective.agreeing(known);
         let ended = Ended { individuals: &individuals, fitness: &fitness, objective };
         self.end_generation(place, &part, ended);
-        if !self.sorted_by_fit_order {
-            self.provisional.push((part, place, before));
-        }
     }
 
     /// A generation that `Fit_Order` got; the place of its search.
     fn end_sorted(&mut self, individuals: &[Vec<f64>], fitness: &[f64]) -> usize {
-        let mut experiments = self.pending.covering(individuals);
-        if experiments.is_empty() {
-            experiments = self.pending.fresh_places();
-        }
+        let covering = self.pending.covering(individuals);
+        let is_known = !covering.is_empty();
+        let experiments = if is_known { covering } else { self.pending.fresh_places() };
         let sums = self.pending.sums(&experiments, individuals, &self.measurements);
-        let objective = recognized(&sums, fitness);
-        let (place, experiments, objective) = self.search_of(experiments, objective);
-        let part = self.pending.take(&experiments);
+        let (place, own, objective) = self.search_of(experiments, (&sums, fitness));
+        let part = self.pending.take(&own, is_known.then_some(individuals));
         self.pending.leave(individuals);
+        let place = place.unwrap_or_else(|| {
+            let targets = part.targets(&part.places(), &self.measurements);
+            self.begin_search(&targets, &part)
+        });
         self.end_generation(place, &part, Ended { individuals, fitness, objective });
         place
     }
 
-    /// The search that a generation belongs to, the experiments that are of it, and what the script
-    /// minimizes: experiments that do not count in the fitness may be those of another search, or
-    /// checks.
+    /// The search that a generation belongs to, if there is one, the experiments that are of it, and what
+    /// the script minimizes by all that was seen: experiments that do not count in the fitness may be
+    /// those of another search, or checks, and other weights make another function.
     fn search_of(
-        &mut self,
+        &self,
         experiments: Vec<usize>,
-        objective: Objective,
-    ) -> (usize, Vec<usize>, Objective) {
+        (sums, fitness): (&[Vec<f64>], &[f64]),
+    ) -> (Option<usize>, Vec<usize>, Objective) {
         let all = self.pending.targets(&experiments, &self.measurements);
-        let owners = self.pending.experiments_of_series(&experiments);
-        let weights = objective.weights(all.len()).unwrap_or_else(|| vec![1.0; all.len()]);
-        let counts = |k: usize| weights[k] != 0.0;
-        let is_used = |own: usize| (0..all.len()).any(|k| owners[k] == own && counts(k));
-        let used: Vec<Target> =
-            (0..all.len()).filter(|k| counts(*k)).map(|k| all[k].clone()).collect();
-        let known = |is_it: &dyn Fn(&ScriptSearch) -> bool| self.searches.iter().rposition(is_it);
-        let whole = match known(&|search| search.compares(&used)) {
-            Some(_) => None,
-            None => known(&|search| search.compares(&all)).or_else(|| {
-                let is_unknown = objective == Objective::Script;
-                known(&|search| is_unknown && search.shares(&all))
-            }),
-        };
-        if let Some(place) = whole {
-            return (place, experiments, objective);
+        let explaining = self.searches.iter().enumerate().rev().find_map(|(place, search)| {
+            let series = search.series_among(&all)?;
+            let own: Vec<Vec<f64>> = sums
+                .iter()
+                .map(|sums| series.iter().filter_map(|&k| sums.get(k)).copied().collect())
+                .collect();
+            let objective = search.objective.clone().filter(|own| own.is_function_of_sums())?;
+            objective.explains(&own, fitness).then_some((place, series, objective))
+        });
+        if let Some((place, series, objective)) = explaining {
+            return (Some(place), series.iter().map(|&k| experiments[k]).collect(), objective);
         }
-        let series: Vec<usize> = (0..all.len()).filter(|k| is_used(owners[*k])).collect();
-        let own = experiments.into_iter().filter(|own| is_used(*own)).collect();
-        (self.search_that_compares(&used), own, objective.of_series(&series))
+        let objective = recognized(sums, fitness);
+        let known = |is_it: &dyn Fn(&ScriptSearch) -> bool| self.searches.iter().rposition(is_it);
+        let Some(weights) = objective.weights(all.len()) else {
+            // Penalties, or a function of the script's own.
+            let place = known(&|search| search.compares(&all));
+            let place = place.or_else(|| known(&|search| search.shares(&all)));
+            let says_nothing = !is_informative(sums, fitness);
+            let before = place.and_then(|place| self.searches[place].objective.clone());
+            let objective = before.filter(|_| says_nothing).unwrap_or(objective);
+            return (place, experiments, objective);
+        };
+        let is_unknown = |search: &ScriptSearch| search.objective == Some(Objective::Script);
+        if let Some(place) = known(&|search| is_unknown(search) && search.compares(&all)) {
+            return (Some(place), experiments, Objective::Script);
+        }
+        let series: Vec<usize> = (0..all.len()).filter(|&k| weights[k] != 0.0).collect();
+        let used: Vec<Target> = series.iter().map(|&k| all[k].clone()).collect();
+        let own = series.iter().map(|&k| experiments[k]).collect();
+        if let Some(place) = known(&|search| is_unknown(search) && search.compares(&used)) {
+            return (Some(place), own, Objective::Script);
+        }
+        // All that was taken for generations of it were parts of this one.
+        let place = known(&|search| search.objective.is_none() && search.compares(&used));
+        (place, own, objective.of_series(&series))
     }
 
-    /// The place of the search that compares this, which may begin now.
-    fn search_that_compares(&mut self, targets: &[Target]) -> usize {
-        let known = self.searches.iter().rposition(|search| search.compares(targets));
-        known.unwrap_or_else(|| {
-            if let Some(before) = self.seeds_before.take().filter(|_| !self.searches.is_empty()) {
-                self.seeds = before.of_next_search(&self.seeds);
-                self.changes.clear();
-            }
-            if let Some(old) = self.searches.len().checked_sub(IN_DETAIL) {
-                self.searches[old].observed.kept = Vec::new();
-            }
-            self.searches.push(ScriptSearch {
-                targets: targets.to_vec(),
-                generations_of_run: [self.generations + 1, 0],
-                ..ScriptSearch::default()
-            });
-            self.searches.len() - 1
-        })
+    /// A search begins, with this generation.
+    fn begin_search(&mut self, targets: &[Target], part: &Generation) -> usize {
+        let [first, _] = part.numbers();
+        let before = self.seeds_before.iter().rev().find(|(number, _)| *number <= first);
+        if let Some((_, before)) = before.filter(|_| !self.searches.is_empty()) {
+            self.seeds = before.of_next_search(&self.seeds);
+            self.changes.clear();
+        }
+        if let Some(old) = self.searches.len().checked_sub(IN_DETAIL) {
+            self.searches[old].observed.kept = Vec::new();
+        }
+        self.searches.push(ScriptSearch {
+            targets: targets.to_vec(),
+            generations_of_run: [self.generations + 1, 0],
+            ..ScriptSearch::default()
+        });
+        self.searches.len() - 1
     }
 
     /// A generation of a search ends.
     fn end_generation(&mut self, place: usize, part: &Generation, ended: Ended<'_>) {
         self.generations += 1;
         self.current = place;
-        self.seeds_before = None;
+        if self.pending.is_empty() {
+            self.seeds_before.clear();
+        }
         let is_last = place + 1 == self.searches.len();
         let search = &mut self.searches[place];
         let number = search.observed.history.generations.len() + 1;
@@ -402,6 +440,7 @@ impl Recorder {
         if is_last {
             search.seed = self.seeds.seed;
         }
+        search.last_individual = search.last_individual.max(part.numbers()[1]);
         search.generations_of_run[1] = self.generations;
         search.seconds += self.seconds[1] - self.seconds[0];
         self.seconds[0] = self.seconds[1];
@@ -553,7 +592,7 @@ mod tests {
             &simulated(&[2.0, 3.0, 4.0]),
         );
         recorder.rated(2..=4, &[3.0]);
-        assert!(!recorder.has_generations());
+        assert!(recorder.generations == 0);
         recorder.rated([1], &[3.0]);
         let search = ended(recorder);
         let best = search.best().unwrap();
@@ -823,5 +862,122 @@ mod tests {
         let seeds: Vec<_> = searches.iter().map(|search| search.seed).collect();
         assert_eq!(seeds, [Some(seed(10.0)), Some(seed(70.0))]);
         assert!(searches.iter().all(|search| search.changes.is_empty()));
+    }
+
+    /// Simulates and compares a population with these measured values.
+    fn compare(recorder: &mut Recorder, genes: &[f64], measured: f64) {
+        let first = recorder.evaluated(&study(), &[0.0], &genomes(genes), &simulated(genes));
+        recorder.rated(first..first + genes.len() as u64, &[measured]);
+    }
+
+    fn sort(recorder: &mut Recorder, genes: &[f64], fitness: impl Fn(f64) -> f64) {
+        let fitness: Vec<f64> = genes.iter().map(|gene| fitness(*gene)).collect();
+        recorder.ordered(&genomes(genes), &fitness);
+    }
+
+    fn square(measured: f64) -> impl Fn(f64) -> f64 {
+        move |gene| (gene - measured).powi(2)
+    }
+
+    /// The same model at the same points, with other measured values; the first populations are the same.
+    #[test]
+    fn data_sets_may_be_sorted_after_both_were_compared() {
+        let mut recorder = Recorder::default();
+        for generation in 0..3 {
+            let one = [1.0, 2.0, 3.0, 4.0, 5.0 + f64::from(generation)];
+            let other = if generation == 0 { one } else { [6.0, 7.0, 2.0, 9.0, 10.5] };
+            compare(&mut recorder, &one, 2.25);
+            compare(&mut recorder, &other, 20.5);
+            sort(&mut recorder, &one, square(2.25));
+            sort(&mut recorder, &other, square(20.5));
+        }
+        assert_eq!(found(recorder), [(2.0, 0.0625, 3, 15), (10.5, 100.0, 3, 15)]);
+    }
+
+    /// Evaluated before the loop and after each mutation, so that the last generation is not sorted.
+    #[test]
+    fn populations_that_wait_are_sorted_by_their_searches() {
+        let mut recorder = Recorder::default();
+        let one = |k: i32| [1.0, 2.0, 3.0, 5.0 - f64::from(k)];
+        let other = |k: i32| [6.0, 7.0, 8.0 + f64::from(k)];
+        compare(&mut recorder, &one(0), 2.25);
+        compare(&mut recorder, &other(0), 20.5);
+        for k in 0..3 {
+            sort(&mut recorder, &one(k), square(2.25));
+            compare(&mut recorder, &one(k + 1), 2.25);
+            sort(&mut recorder, &other(k), square(20.5));
+            compare(&mut recorder, &other(k + 1), 20.5);
+        }
+        assert_eq!(found(recorder), [(2.0, 0.0625, 4, 16), (11.0, 90.25, 4, 12)]);
+    }
+
+    #[test]
+    fn individuals_of_two_searches_may_be_simulated_one_by_one() {
+        let mut recorder = Recorder::default();
+        for k in 0..3 {
+            let one = [1.0, 2.0, 3.0 + f64::from(k)];
+            let other = [6.0, 7.0, 8.0 + f64::from(k)];
+            for (a, b) in one.into_iter().zip(other) {
+                compare(&mut recorder, &[a], 2.25);
+                compare(&mut recorder, &[b], 20.5);
+            }
+            sort(&mut recorder, &one, square(2.25));
+            sort(&mut recorder, &other, square(20.5));
+        }
+        assert_eq!(found(recorder), [(2.0, 0.0625, 3, 9), (10.0, 110.25, 3, 9)]);
+    }
+
+    #[test]
+    fn islands_are_one_search() {
+        let mut recorder = Recorder::default();
+        for k in 0..3 {
+            let one = [1.0, 5.0, 6.0];
+            let other = if k == 0 { one } else { [2.0, 7.0, 8.0] };
+            compare(&mut recorder, &one, 2.25);
+            compare(&mut recorder, &other, 2.25);
+            sort(&mut recorder, &one, square(2.25));
+            sort(&mut recorder, &other, square(2.25));
+        }
+        assert_eq!(found(recorder), [(2.0, 0.0625, 6, 18)]);
+    }
+
+    #[test]
+    fn other_weights_are_another_function() {
+        let mut recorder = Recorder::default();
+        for generation in 0..4 {
+            let genes = [1.0, 2.0, 3.0, 4.0 + f64::from(generation)];
+            compare(&mut recorder, &genes, 2.25);
+            let weight = if generation < 2 { 1.0 } else { 10.0 };
+            sort(&mut recorder, &genes, |gene| weight * (gene - 2.25).powi(2));
+        }
+        assert_eq!(found(recorder), [(2.0, 0.0625, 2, 8), (2.0, 0.625, 2, 8)]);
+    }
+
+    /// Some individuals of later generations have a penalty: there is no sum of squares that the script
+    /// minimizes.
+    #[test]
+    fn a_penalty_makes_a_function_of_the_script() {
+        let mut recorder = Recorder::default();
+        for generation in 0..4 {
+            let genes = [1.0, 2.0, 3.0, 4.0, 5.0];
+            compare(&mut recorder, &genes, 2.25);
+            let penalty = |gene: f64| if generation > 1 { (gene - 2.5).max(0.0) } else { 0.0 };
+            sort(&mut recorder, &genes, |gene| (gene - 2.25).powi(2) + penalty(gene));
+        }
+        let search = ended(recorder);
+        assert_eq!(search.best().unwrap().objective, &Objective::Script);
+    }
+
+    /// A script that narrows its ranges has searched in all of them.
+    #[test]
+    fn ranges_are_those_of_all_generations() {
+        let mut recorder = Recorder::default();
+        for generation in 0..4 {
+            let genes = [1.0, 2.0, 3.0, 4.0];
+            generation_of(&mut recorder, &study(), &genes, 2.25);
+            let end = 9.0 - f64::from(generation);
+            recorder.searched(&[1.0 / end], &[end], &genomes(&genes));
+        }
+        assert_eq!(ended(recorder).ranges, Some((vec![1.0 / 9.0], vec![9.0])));
     }
 }

@@ -23,18 +23,11 @@ pub struct ScriptBest<'a> {
     pub compared: &'a [Compared],
 }
 
-/// What the fitness of the best individual is, and everything that it was compared with.
-#[derive(Debug, Clone)]
-pub(super) struct Comparison {
-    pub objective: Objective,
-    pub compared: Vec<Compared>,
-}
-
 /// A generation that has ended.
 pub(super) struct Ended<'a> {
     pub individuals: &'a [Vec<f64>],
     pub fitness: &'a [f64],
-    /// What the script minimizes, by this generation.
+    /// What the script minimizes, by all that was seen.
     pub objective: Objective,
 }
 
@@ -42,7 +35,8 @@ pub(super) struct Ended<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Before {
     best: Option<Best>,
-    comparison: Option<Comparison>,
+    compared: Option<Vec<Compared>>,
+    objective: Option<Objective>,
     tally: Tally,
 }
 
@@ -51,7 +45,7 @@ pub(super) struct Before {
 pub struct ScriptSearch {
     /// Its generations, its best individual, and its failures.
     pub observed: SearchRecord,
-    /// The search ranges used last: minima and maxima.
+    /// The search ranges: the least minima and the largest maxima of all that were given.
     pub ranges: Option<(Vec<f64>, Vec<f64>)>,
     /// Smallest and largest gene of all individuals that were simulated.
     pub spanned: Option<(Vec<f64>, Vec<f64>)>,
@@ -68,7 +62,12 @@ pub struct ScriptSearch {
     pub seed: Option<[f64; 6]>,
     /// The numbers of its first and its last generation among those of the run.
     pub generations_of_run: [u64; 2],
-    pub(super) comparison: Option<Comparison>,
+    /// Everything that the best individual was compared with.
+    pub(super) compared: Option<Vec<Compared>>,
+    /// What the script minimizes, by all that was seen.
+    pub(super) objective: Option<Objective>,
+    /// The largest number of an individual of its generations.
+    pub(super) last_individual: u64,
     /// What its generations compare.
     pub(super) targets: Vec<Target>,
     /// Individuals of the generation that ended last.
@@ -80,12 +79,12 @@ pub struct ScriptSearch {
 impl ScriptSearch {
     /// The best individual so far.
     pub fn best(&self) -> Option<ScriptBest<'_>> {
-        let (best, comparison) = (self.observed.best.as_ref()?, self.comparison.as_ref()?);
+        let (best, compared) = (self.observed.best.as_ref()?, self.compared.as_ref()?);
         Some(ScriptBest {
             genome: &best.values,
             fitness: best.fitness,
-            objective: &comparison.objective,
-            compared: &comparison.compared,
+            objective: self.objective.as_ref()?,
+            compared,
         })
     }
 
@@ -125,6 +124,12 @@ impl ScriptSearch {
             || self.targets.iter().all(|own| targets.contains(own))
     }
 
+    /// Which of these targets are its own, in their order; `None` where one is missing.
+    pub(super) fn series_among(&self, targets: &[Target]) -> Option<Vec<usize>> {
+        let place = |own: &Target| targets.iter().position(|target| target == own);
+        self.targets.iter().map(place).collect()
+    }
+
     /// Counts these simulations as well.
     pub(super) fn count(&mut self, tally: &Tally) {
         self.evaluations += tally.simulations;
@@ -132,16 +137,13 @@ impl ScriptSearch {
     }
 
     /// Extends what the individuals span.
-    pub(super) fn span<'a>(&mut self, mut genomes: impl Iterator<Item = &'a [f64]>) {
-        let Some(first) = genomes.next() else { return };
-        let known = self.spanned.take().filter(|(low, _)| low.len() == first.len());
-        let (mut low, mut high) = known.unwrap_or_else(|| (first.to_vec(), first.to_vec()));
-        for genome in std::iter::once(first).chain(genomes) {
-            for (k, &gene) in genome.iter().enumerate().take(low.len()) {
-                (low[k], high[k]) = (low[k].min(gene), high[k].max(gene));
-            }
-        }
-        self.spanned = Some((low, high));
+    pub(super) fn span<'a>(&mut self, genomes: impl Iterator<Item = &'a [f64]>) {
+        genomes.for_each(|genome| extend(&mut self.spanned, [genome, genome]));
+    }
+
+    /// Extends the search ranges: those of a script that narrows them are all that it has searched.
+    pub(super) fn extend_ranges(&mut self, minima: &[f64], maxima: &[f64]) {
+        extend(&mut self.ranges, [minima, maxima]);
     }
 
     /// A generation with these simulations has ended: its best individual may be that of the search.
@@ -152,17 +154,15 @@ impl ScriptSearch {
         measurements: &[Measurement],
     ) {
         self.generation_size = fitness.len();
-        let mut comparison = None;
-        let before = self.comparison.as_ref().map(|before| &before.objective);
+        self.objective = Some(objective);
+        let mut compared = None;
         let counts = |k: usize| {
-            let compared = part.compared(&part.places(), &individuals[k], measurements);
-            let is_known = !compared.is_empty();
-            comparison =
-                is_known.then(|| Comparison { objective: objective.agreeing(before), compared });
-            is_known
+            let own = part.compared(&part.places(), &individuals[k], measurements);
+            compared = Some(own).filter(|own| !own.is_empty());
+            compared.is_some()
         };
         if self.observed.generation(fitness, |k| individuals[k].clone(), counts) {
-            self.comparison = comparison;
+            self.compared = compared;
         }
     }
 
@@ -171,7 +171,8 @@ impl ScriptSearch {
         let failures = self.observed.failures.clone();
         Before {
             best: self.observed.best.clone(),
-            comparison: self.comparison.clone(),
+            compared: self.compared.clone(),
+            objective: self.objective.clone(),
             tally: Tally { simulations: self.evaluations, failures },
         }
     }
@@ -179,9 +180,20 @@ impl ScriptSearch {
     /// The last generation was none.
     pub(super) fn take_back(&mut self, before: Before) {
         self.observed.take_back(before.best);
-        self.comparison = before.comparison;
+        (self.compared, self.objective) = (before.compared, before.objective);
         self.evaluations = before.tally.simulations;
         self.observed.failures = before.tally.failures;
+    }
+}
+
+fn extend(known: &mut Option<(Vec<f64>, Vec<f64>)>, [minima, maxima]: [&[f64]; 2]) {
+    match known {
+        Some((low, high)) if low.len() == minima.len() => {
+            for k in 0..low.len() {
+                (low[k], high[k]) = (low[k].min(minima[k]), high[k].max(maxima[k]));
+            }
+        }
+        _ => *known = Some((minima.to_vec(), maxima.to_vec())),
     }
 }
 

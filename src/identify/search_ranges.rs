@@ -67,7 +67,7 @@ impl SearchRanges {
         };
         let all = || self.given.iter().rev();
         if let Some(own) = all().find(made).or_else(|| all().find(contain)) {
-            search.ranges = Some((own.minima.clone(), own.maxima.clone()));
+            search.extend_ranges(&own.minima, &own.maxima);
         }
     }
 }

@@ -20,6 +20,8 @@ pub struct Seeds {
     inherited: bool,
     /// Another seed was set after the first simulation; it counts when the run continues.
     waiting: Option<[f64; 6]>,
+    /// Places in the scripts that drew before the first simulation.
+    initial: FxHashSet<u64>,
     /// Places in the scripts that draw between two generations.
     in_cycle: FxHashSet<u64>,
     /// Those that drew since the last simulation.
@@ -38,12 +40,15 @@ impl Seeds {
         self.chain = Some(Chain { first, next });
         if !simulated {
             self.seed = Some(first);
+            self.initial.insert(site);
             return;
         }
         self.seed.get_or_insert(first);
         if continues.is_none() {
             (self.waiting, self.next_first) = (Some(seed), Some(seed));
-        } else if !self.in_cycle.is_empty() && !self.in_cycle.contains(&site) {
+        } else if !self.in_cycle.contains(&site)
+            && (!self.in_cycle.is_empty() || self.initial.contains(&site))
+        {
             self.next_first.get_or_insert(seed);
         }
         self.since.push(site);
@@ -72,6 +77,7 @@ impl Seeds {
             seed,
             chain,
             inherited: seed.is_some() && seed == self.seed && self.next_first.is_none(),
+            initial: self.initial.clone(),
             in_cycle: self.in_cycle.clone(),
             ..Seeds::default()
         }

@@ -4,14 +4,14 @@
 use super::identification::{Identification, Prepared};
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::errors::BAD_POPULATION;
-use crate::identify::errors::SEVERAL_SEARCHES;
+use crate::identify::errors::{EARLIER_RESULTS, SEVERAL_SEARCHES};
 use crate::identify::problem::{
     Finding, FindingKind, NOISE_OF_FORMULAS, ScriptError, Severity, Solution,
 };
 use crate::identify::{Compared, Ending, Measurement, Model, ScriptSearch};
 use crate::models::data_notes::DataNotes;
 use crate::source::Span;
-use crate::{Reporting, Session};
+use crate::{Reporting, Session, fault};
 use std::sync::Arc;
 
 impl Session {
@@ -24,10 +24,10 @@ impl Session {
         identification
     }
 
-    /// Notes measured data. Data read after generations have been evaluated begin another run: the
-    /// one before is reported.
+    /// Notes measured data. Data read after several generations have been evaluated begin another run:
+    /// the one before is reported.
     pub(crate) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
-        if self.identification().recorder.has_generations() {
+        if self.identification().recorder.begins_another_run() {
             let own = self.extension::<DataNotes>().split_off_measurement();
             report_run(self)?;
             self.extension::<DataNotes>().begin_run(own);
@@ -59,7 +59,11 @@ impl Session {
 
 /// What remains to be done when the outermost script ends.
 fn report(session: &mut Session) -> Result<(), Diagnostic> {
-    report_run(session).map_err(|fault| fault.at(Span::NONE))
+    report_run(session).map_err(|fault| fault.at(Span::NONE))?;
+    if session.options.reporting != Reporting::Off {
+        note_earlier_results(session);
+    }
+    Ok(())
 }
 
 /// The reports of a run, one of each of its searches: the table for people, and the files for
@@ -185,14 +189,38 @@ fn models_of(session: &mut Session, all: &[Compared]) -> (Vec<Option<Arc<dyn Mod
 
 /// Says why a search that has simulated generations has no report: its best individual is not known.
 fn note_unknown_best(session: &mut Session, search: &ScriptSearch) {
-    let simulated = search.evaluations - search.observed.failures.count;
-    if search.evolves && simulated > 0 && !session.is_interrupted() {
-        let text = format!(
-            "there is no report of {simulated} simulations: the individuals that were sorted are not \
-             those that `Eval` has simulated, and their fitness is not the sum of squares of these; \
-             sort what is simulated, in its order"
+    let failures = &search.observed.failures;
+    let simulated = search.evaluations - failures.count;
+    if !search.evolves || simulated == 0 || session.is_interrupted() {
+        return;
+    }
+    if search.observed.trace.iter().all(Vec::is_empty) {
+        let cause = failures.main_cause().map_or(String::new(), |(cause, count)| {
+            format!("; {count} simulations failed: {cause}")
+        });
+        let fault = fault!(
+            BAD_POPULATION,
+            "the search of {} has no result: all individuals have the fitness of a failed \
+             simulation{cause}", search.models();
+            help: "correct the model that fails, or omit it in the sum"
         );
-        session.note(BAD_POPULATION, text);
+        return session.report(fault.at(Span::NONE));
+    }
+    let text = format!(
+        "there is no report of {simulated} simulations: the individuals that were sorted are not \
+         those that `Eval` has simulated, and their fitness is not the sum of squares of these; \
+         sort what is simulated, in its order"
+    );
+    session.note(BAD_POPULATION, text);
+}
+
+/// Says that the results of a further search are of an earlier run: they are not removed.
+fn note_earlier_results(session: &mut Session) {
+    let run = session.extension::<Identification>().reported;
+    let folder = session.world.output_dir().join(format!("run-{}", run + 1));
+    if run > 0 && session.world.exists(&folder.join("result.json")) {
+        let text = format!("`{}` has results of an earlier run", folder.display());
+        session.note(EARLIER_RESULTS, text);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::support::shipped;
 use gapilib::Session;
+use gapilib::world::MemoryWorld;
 
 const DECAY: &str = "model M\n  parameter Real a = 1;\n  parameter Real k = 1;\n  \
                      output Real y = a*exp(-k*time);\n  annotation(experiment(StopTime = 4));\nend M;\n\
@@ -249,4 +250,38 @@ fn a_search_without_a_result_is_named() {
     let run = run(&script);
     assert!(run.errors.contains("the search of L has no result: none of 3"), "{}", run.errors);
     assert!(near(reported(&run.session, "result.json").1, [2.0149, 0.50489]));
+}
+
+/// The weights of the sum fail with the second model, whatever the first does.
+#[test]
+fn a_sum_with_a_model_that_fails_says_so() {
+    let script = format!(
+        "{DECAY}model L parameter Real a = 1; parameter Real k = 1; output Real y = log(-1 - a^2); end L;\n\
+         P = [2.0,0.5; 1.9,0.6; 2.1,0.4];\nY = {{2.02,1.2,0.75,0.43,0.28}};\n\
+         F = Fit(Eval(\"\", \"M\", Xexp, P, {{\"a\",\"k\"}}, \"time\", \"y\"), Y) + \
+         Fit(Eval(\"\", \"L\", Xexp, P, {{\"a\",\"k\"}}, \"time\", \"y\"), Y);\n\
+         (Q, G) = Fit_Order(P, F, 3, 2, 1);\n"
+    );
+    let said = run(&script).errors;
+    assert!(said.contains("the search of M, L has no result") && said.contains("log"), "{said}");
+}
+
+/// A script that had two searches has one now: what is left of the second is of the run before.
+#[test]
+fn results_of_an_earlier_run_are_named() {
+    let eval = |data: &str| {
+        format!(
+            "F = Fit(Eval(\"\", \"M\", Xexp, [2.0,0.5; 1.9,0.6; 2.1,0.4], {{\"a\",\"k\"}}, \"time\", \
+             \"y\"), {data});\n"
+        )
+    };
+    let script = format!("{DECAY}{}", eval("{2.02,1.2,0.75,0.43,0.28}"));
+    let earlier = MemoryWorld::new().with_file("results/run-2/result.json", b"{}");
+    for (world, is_said) in [(MemoryWorld::new(), false), (earlier, true)] {
+        let streams = world.streams();
+        let mut session = Session::new(Box::new(world));
+        session.run_text("test.mos", &script);
+        let said = streams.errors() + &streams.output();
+        assert_eq!(said.contains("run-2` has results of an earlier run"), is_said, "{said}");
+    }
 }

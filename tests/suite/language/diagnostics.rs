@@ -37,6 +37,8 @@ const WITHOUT_SCRIPT: &[&str] = &[
     // Only several processes can differ: see `ranks.rs`.
     "ranks-differ",
     "ranks-idle",
+    // It takes two runs in one folder: see `script_reports.rs`.
+    "earlier-results",
     // It follows twenty reports: see `script_reports.rs`.
     "several-searches",
     // It takes a text of four gibibytes.
