@@ -43,10 +43,10 @@ pub struct Recorder {
     tally: Tally,
     /// Generations of all searches that have ended.
     generations: u64,
-    /// Seconds, on the clock of the session, until the generation that ended last and until now.
-    seconds: [f64; 2],
     /// Those that had ended when data were read last.
     generations_before_data: u64,
+    /// Seconds since the run began, until the generation that ended last and until now.
+    seconds: [f64; 2],
     /// What the user has changed for the generation that ends next.
     changes: Vec<String>,
     /// Whether operators were called since the last generation ended.
@@ -111,9 +111,9 @@ impl Recorder {
         self.searches.iter().rev().find(|search| search.simulates(study, x))
     }
 
-    /// What was simulated since the last generation ended.
-    pub fn pending_tally(&self) -> Tally {
-        self.pending.tally()
+    /// Whether there is one search at most, so far.
+    pub fn is_one_search(&self) -> bool {
+        self.searches.len() <= 1
     }
 
     /// Begins to record another run and returns the searches of the one before, finished.
@@ -263,7 +263,7 @@ impl Recorder {
         }
         let (last, count) = (search.last_individual, search.generation_size);
         let Some(part) = self.pending.take_rest(target, last, count) else { return };
-        self.end_unsorted(part, place);
+        self.end_unsorted(&part, place);
     }
 
     /// At `Fit_Order`: what was taken for generations of a search before, because nothing sorted, were
@@ -310,8 +310,7 @@ impl Recorder {
             let place = known.unwrap_or_else(|| self.begin_search(&targets, &part));
             let before = self.searches[place].before();
             self.evolves = evolves;
-            self.end_unsorted(part.clone(), place);
-            if !self.sorted_by_fit_order {
+            if self.end_unsorted(&part, place) && !self.sorted_by_fit_order {
                 self.provisional.push((part, place, before));
             }
         }
@@ -320,15 +319,16 @@ impl Recorder {
         }
     }
 
-    /// A generation that the script has not sorted.
-    fn end_unsorted(&mut self, part: Generation, place: usize) {
+    /// A generation that the script has not sorted; whether it is one: its measured values may be unknown.
+    fn end_unsorted(&mut self, part: &Generation, place: usize) -> bool {
         let experiments = part.places();
         let individuals = part.genomes(0);
         let sums = part.sums(&experiments, &individuals, &self.measurements);
         let total = |sums: &Vec<f64>| if sums.is_empty() { f64::NAN } else { sums.iter().sum() };
         let mut fitness: Vec<f64> = sums.iter().map(total).collect();
         if fitness.iter().all(|fitness| fitness.is_nan()) {
-            return self.pending.count(&part.tally());
+            self.pending.count(&part.tally());
+            return false;
         }
         for value in fitness.iter_mut().filter(|value| has_failed(**value)) {
             *value = crate::ga::FAILED_FITNESS;
@@ -340,7 +340,8 @@ impl Recorder {
         let known = self.searches[place].objective.as_ref();
         let objective = objective.agreeing(known);
         let ended = Ended { individuals: &individuals, fitness: &fitness, objective };
-        self.end_generation(place, &part, ended);
+        self.end_generation(place, part, ended);
+        true
     }
 
     /// A generation that `Fit_Order` got; the place of its search.
@@ -953,8 +954,8 @@ mod tests {
         assert_eq!(found(recorder), [(2.0, 0.0625, 2, 8), (2.0, 0.625, 2, 8)]);
     }
 
-    /// Some individuals of later generations have a penalty: there is no sum of squares that the script
-    /// minimizes.
+    /// Some individuals of later generations have a penalty: the script minimizes something else than a sum
+    /// of squares.
     #[test]
     fn a_penalty_makes_a_function_of_the_script() {
         let mut recorder = Recorder::default();

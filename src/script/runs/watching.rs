@@ -31,11 +31,12 @@ impl Session {
         let before = ScriptSearch::default();
         let search = recorder.search_simulating(study, x).unwrap_or(&before);
         let mut progress = progress(search, iterations);
-        let pending = recorder.pending_tally().failures;
-        progress.failures += pending.count;
-        if progress.main_cause.is_none() {
-            progress.main_cause =
-                pending.main_cause().map(|(cause, count)| (cause.to_owned(), count));
+        // Those of the generation at hand are not yet counted in a search.
+        if recorder.is_one_search() {
+            let failures = &recorder.tally().failures;
+            progress.failures = failures.count;
+            let main = failures.main_cause();
+            progress.main_cause = main.map(|(cause, count)| (cause.to_owned(), count));
         }
         if self.show_search(progress, &search.observed, || drawn(search, study, genomes)) {
             self.extension::<Identification>().shown = Some(Shown {
